@@ -79,10 +79,9 @@ Result<void> prepareFolder(const fs::path& folder) {
   if (ec)
     return failure(folder.string(), fmt::format("can't be created ({})", ec.message()),
                    "Choose a writable folder with --out.");
-  return writeFile(folder / ".writable", "").and_then([&]() -> Result<void> {
-    std::error_code ignored;
-    fs::remove(folder / ".writable", ignored);
-    return {};
-  });
+  const fs::path probe = folder / ".writable";
+  if (auto written = writeFile(probe, ""); !written) return written;
+  fs::remove(probe, ec);
+  return {};
 }
 }  // namespace swallowclip
