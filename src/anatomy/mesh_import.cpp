@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: MIT
+#include "anatomy/mesh_import.h"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "core/file.h"
+
+namespace swallowclip::anatomy {
+namespace fs = std::filesystem;
+namespace {
+
+// Bounds on what a file may claim; both far above any anatomy. Assumed.
+constexpr std::size_t kMaxFileBytes = std::size_t(1) << 30;
+constexpr std::size_t kMaxCorners = 30'000'000;
+constexpr double kMaxCoordinate = 1e7;  ///< file units; a head in mm is 300
+
+constexpr const char* kExportAgain = "Export or copy the file again.";
+
+std::string lower(std::string s) {
+  for (char& c : s) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return s;
+}
+
+std::string_view nextLine(std::string_view& rest) {
+  const std::size_t end = rest.find('\n');
+  std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+  return line;
+}
+
+std::vector<std::string_view> words(std::string_view line) {
+  std::vector<std::string_view> w;
+  while (true) {
+    const std::size_t start = line.find_first_not_of(" \t");
+    if (start == std::string_view::npos) return w;
+    line.remove_prefix(start);
+    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
+    w.push_back(line.substr(0, end));
+    line.remove_prefix(end);
+  }
+}
+
+template <class T>
+bool parse(std::string_view w, T& value) {
+  if (!w.empty() && w.front() == '+') w.remove_prefix(1);
+  return std::from_chars(w.data(), w.data() + w.size(), value).ec == std::errc();
+}
+
+/// What readers let pass in an OBJ: numbers that are none, faces cut off, vertices that aren't there.
+Result<void> checkObj(std::string_view text, const std::string& file, RawMesh& mesh) {
+  int vertices = 0, number = 0, farthestLine = 0;
+  long farthest = 0;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = nextLine(rest);
+    ++number;
+    const bool isVertex = line.starts_with("v ") || line.starts_with("v\t");
+    const bool isFace = line.starts_with("f ") || line.starts_with("f\t");
+    if ((!isVertex && !isFace) || line.ends_with('\\')) continue;
+    const std::string place = fmt::format("{}:{}", file, number);
+    const std::vector<std::string_view> w = words(line.substr(2));
+    if (w.size() < 3)
+      return usageError(place, fmt::format("{} with {} of 3 or more numbers: cut off?",
+                                           isVertex ? "a vertex" : "a face", w.size()),
+                        kExportAgain);
+    if (isVertex) {
+      ++vertices;
+      for (int k = 0; k < 3; ++k)
+        if (double x = 0; !parse(w[k], x) || !std::isfinite(x))
+          return usageError(place, fmt::format("coordinate \"{}\" is no finite number", w[k]),
+                            kExportAgain);
+      continue;
+    }
+    for (std::string_view corner : w) {
+      long index = 0;
+      if (!parse(corner.substr(0, corner.find('/')), index) || index == 0 || -index > vertices)
+        return usageError(place, fmt::format("\"{}\" names no vertex", corner), kExportAgain);
+      if (index > farthest) farthest = index, farthestLine = number;
+    }
+  }
+  if (farthest > vertices)
+    return usageError(fmt::format("{}:{}", file, farthestLine),
+                      fmt::format("a face names vertex {}, but the file has {}", farthest, vertices),
+                      kExportAgain);
+  mesh.fileVertices = vertices;
+  mesh.unusedVertices = farthest > 0 ? vertices - int(farthest) : 0;
+  return {};
+}
+
+/// Compares the counts a PLY header claims with the bytes that follow.
+Result<void> checkPly(std::string_view text, const std::string& file) {
+  static const std::map<std::string_view, int> sizes{
+      {"char", 1},  {"uchar", 1}, {"int8", 1},   {"uint8", 1},   {"short", 2},   {"ushort", 2},
+      {"int16", 2}, {"uint16", 2}, {"int", 4},   {"uint", 4},    {"int32", 4},   {"uint32", 4},
+      {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
+  bool ascii = false, ended = false;
+  double count = 0, needed = 0;
+  std::string_view rest = text;
+  while (!rest.empty() && !ended) {
+    const std::vector<std::string_view> w = words(nextLine(rest));
+    if (w.empty()) continue;
+    if (w[0] == "end_header") ended = true;
+    if (w[0] == "format" && w.size() > 1) ascii = w[1] == "ascii";
+    if (w[0] == "element" && (w.size() < 3 || !parse(w[2], count) || count < 0))
+      return usageError(file, "a PLY element without a count", kExportAgain);
+    if (w[0] != "property" || w.size() < 2) continue;
+    // the least one item can take: a lone digit and its blank, or an empty list
+    const std::string_view type = w[1] == "list" && w.size() > 2 ? w[2] : w[1];
+    const auto size = sizes.find(type);
+    if (size == sizes.end())
+      return usageError(file, fmt::format("unknown PLY type \"{}\"", type), kExportAgain);
+    needed += count * (ascii ? 2 : size->second);
+  }
+  if (!ended) return usageError(file, "the PLY header has no end_header", kExportAgain);
+  if (double(rest.size()) + 1 < needed)
+    return usageError(file,
+                      fmt::format("the PLY header promises at least {:.0f} bytes, {} are there",
+                                  needed, rest.size()),
+                      kExportAgain);
+  return {};
+}
+
+Result<void> checkStl(std::string_view bytes, const std::string& file) {
+  if (bytes.starts_with("solid") && bytes.find("facet") != std::string_view::npos) {
+    if (bytes.find("endsolid") != std::string_view::npos) return {};
+    return usageError(file, "the text STL has no endsolid: cut off?", kExportAgain);
+  }
+  std::uint32_t count = 0;
+  if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, 4);
+  if (const std::size_t needed = 84 + std::size_t(count) * 50; bytes.size() < needed)
+    return usageError(file,
+                      fmt::format("the STL promises {} triangles in {} bytes, {} are there", count,
+                                  needed, bytes.size()),
+                      kExportAgain);
+  return {};
+}
+
+/// Appends what hangs below `node`, in file order, with all transforms applied.
+void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, bool inside,
+             const std::string& object, RawMesh& out) {
+  const aiMatrix4x4 here = parent * node.mTransformation;
+  inside = inside || object.empty() || object == node.mName.C_Str();
+  for (unsigned k = 0; k < node.mNumMeshes; ++k) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[k]];
+    if (!inside && object != mesh.mName.C_Str()) continue;
+    const int base = int(out.corners.size());
+    if (out.corners.size() + mesh.mNumVertices > kMaxCorners) return;
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D x = here * mesh.mVertices[v];
+      out.corners.emplace_back(x.x, x.y, x.z);
+    }
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices < 3) continue;  // points and lines
+      std::vector<int> polygon;
+      for (unsigned i = 0; i < face.mNumIndices; ++i)
+        if (face.mIndices[i] < mesh.mNumVertices) polygon.push_back(base + int(face.mIndices[i]));
+      if (polygon.size() == face.mNumIndices) out.faces.push_back(std::move(polygon));
+    }
+  }
+  for (unsigned k = 0; k < node.mNumChildren; ++k)
+    collect(scene, *node.mChildren[k], here, inside, object, out);
+}
+
+void objectNames(const aiNode& node, std::vector<std::string>& names) {
+  if (node.mName.length > 0) names.push_back(node.mName.C_Str());
+  for (unsigned k = 0; k < node.mNumChildren; ++k) objectNames(*node.mChildren[k], names);
+}
+}  // namespace
+
+Result<RawMesh> readMeshFile(const fs::path& path, const std::string& object) {
+  const std::string file = path.string();
+  std::error_code ec;
+  if (fs::is_regular_file(path, ec) && fs::file_size(path, ec) > kMaxFileBytes)
+    return usageError(file, "is larger than 1 GB", "Decimate it, or cut it into structures.");
+  const auto bytes = readFile(path);
+  if (!bytes) return std::unexpected(bytes.error());
+  const std::string extension = lower(path.extension().string());
+  RawMesh mesh{.file = file, .fileVertices = 0, .corners = {}, .faces = {}, .unusedVertices = 0};
+  Result<void> sound;
+  if (extension == ".obj") sound = checkObj(*bytes, file, mesh);
+  if (extension == ".ply") sound = checkPly(*bytes, file);
+  if (extension == ".stl") sound = checkStl(*bytes, file);
+  if (!sound) return std::unexpected(sound.error());
+  try {
+    Assimp::Importer importer;
+    // no post-processing: joining and triangulating would differ from frame to frame
+    const aiScene* scene = importer.ReadFile(file, 0);
+    if (!scene || !scene->mRootNode)
+      return usageError(file, fmt::format("can't be read as a mesh ({})", importer.GetErrorString()),
+                        "Export it as OBJ, PLY, STL or glTF.");
+    collect(*scene, *scene->mRootNode, aiMatrix4x4(), false, object, mesh);
+    if (!object.empty() && mesh.faces.empty()) {
+      std::vector<std::string> names;
+      objectNames(*scene->mRootNode, names);
+      const std::string near = nearestName(object, names);
+      return usageError(file, fmt::format("has no object \"{}\" with faces", object),
+                        near.empty() ? "Name one of its objects." : "Did you mean " + near + "?");
+    }
+  } catch (const std::exception& e) {
+    return usageError(file, fmt::format("can't be read as a mesh ({})", e.what()), kExportAgain);
+  }
+  if (mesh.faces.empty())
+    return usageError(file, "has no faces", "Export its faces too, or leave it out.");
+  for (const Vec3& x : mesh.corners)
+    if (!x.allFinite() || x.cwiseAbs().maxCoeff() > kMaxCoordinate)
+      return usageError(file, "has a coordinate that is not a number or beyond 1e7", kExportAgain);
+  if (mesh.fileVertices == 0) mesh.fileVertices = int(mesh.corners.size());
+  return mesh;
+}
+
+namespace {
+/// Where structures lie and how large they are in an adult: largest bounding-box side and centre
+/// behind and above the posterior nasal spine, mm. Rounded from two adults; +-30 % does no harm.
+struct Layout {
+  std::string_view name;  ///< beginning of the structure's name
+  double extent_mm, y_mm, z_mm;
+};
+constexpr Layout kLayout[] = {
+    {"mandible", 120, -9, -26},    {"maxilla", 125, -28, 0},     {"lower_teeth", 60, -35, -30},
+    {"upper_teeth", 60, -35, -20}, {"tongue", 75, -12, -37},     {"soft_palate", 55, 14, -20},
+    {"velum", 55, 14, -20},        {"face", 150, -22, -28},      {"hyoid", 53, 13, -63},
+    {"epiglottis", 35, 20, -65},   {"thyroid", 50, 14, -88},     {"cricoid", 32, 20, -105},
+    {"arytenoid", 16, 24, -88},    {"larynx", 55, 18, -75},      {"trachea", 100, 20, -150},
+    {"pharyn", 70, 28, -40},       {"airway", 110, -18, -43},    {"c1", 88, 60, -18},
+    {"c2", 62, 63, -32},           {"c3", 62, 60, -57},          {"c4", 60, 61, -74},
+    {"c5", 62, 65, -92},           {"c6", 68, 70, -107},         {"c7", 75, 78, -125},
+    {"disc_c2", 18, 44, -47},      {"disc_c3", 28, 45, -65},     {"disc_c4", 27, 46, -85},
+    {"disc_c5", 28, 48, -103},     {"disc_c6", 27, 54, -118}};
+constexpr double kMaxUnitMisfit = 0.4;  ///< log10 of the factor 2.5; unit steps are 10 and 100
+/// Alignment of file and adult layout (cosine): least accepted, and least lead over the second best.
+constexpr double kMinAxesFit = 0.8, kMinAxesLead = 0.05;  // assumed, 0.7..0.9 and 0.03..0.1
+
+const Layout* layoutOf(std::string_view name) {
+  for (const Layout& l : kLayout)
+    if (name.starts_with(l.name)) return &l;
+  return nullptr;
+}
+
+/// The 24 rotations that turn axes into axes.
+std::vector<Mat3> axisRotations() {
+  std::vector<Mat3> all;
+  for (int a = 0; a < 6; ++a)
+    for (int b = 0; b < 6; ++b) {
+      if (a / 2 == b / 2) continue;
+      const Vec3 x = Vec3::Unit(a / 2) * (a % 2 ? -1 : 1), y = Vec3::Unit(b / 2) * (b % 2 ? -1 : 1);
+      Mat3 r;
+      r << x, y, x.cross(y);
+      all.push_back(r.transpose());
+    }
+  return all;
+}
+}  // namespace
+
+std::string axesText(const Mat3& oursFromFile) {
+  static const char* names[3][2] = {
+      {"left", "right"}, {"posterior", "anterior"}, {"superior", "inferior"}};
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    Eigen::Index row = 0;
+    oursFromFile.col(k).cwiseAbs().maxCoeff(&row);
+    text += fmt::format("{}{} is {}", k ? ", " : "", "xyz"[k],
+                        names[row][oursFromFile(row, k) < 0 ? 1 : 0]);
+  }
+  return text;
+}
+
+Result<double> guessUnit(const std::map<std::string, double>& extents, const std::string& place) {
+  std::vector<double> misfits;  // log10 of metres per file unit, one vote per structure
+  for (const auto& [name, extent] : extents)
+    if (const Layout* l = layoutOf(name); l && extent > 0)
+      misfits.push_back(std::log10(l->extent_mm * kMetrePerMm / extent));
+  const char* remedy = "Say \"unit\": \"mm\", \"cm\" or \"m\" in the mapping.";
+  if (misfits.empty())
+    return usageError(place, "the unit can't be guessed: no structure of known size", remedy);
+  std::nth_element(misfits.begin(), misfits.begin() + misfits.size() / 2, misfits.end());
+  const double vote = misfits[misfits.size() / 2];
+  for (const double unit : {1e-3, 1e-2, 1.0})
+    if (std::abs(vote - std::log10(unit)) < kMaxUnitMisfit) return unit;
+  return usageError(place,
+                    fmt::format("the unit can't be guessed: adult size needs {:.3g} m per file unit, "
+                                "neither mm, cm nor m", std::pow(10.0, vote)),
+                    remedy);
+}
+
+Result<Mat3> guessAxes(const std::map<std::string, Vec3>& centres, const std::string& place) {
+  std::vector<Vec3> found, adult;
+  for (const auto& [name, c] : centres)
+    if (const Layout* l = layoutOf(name)) {
+      const bool isLeft = name.ends_with("_L") || name.ends_with("_left");
+      const bool isRight = name.ends_with("_R") || name.ends_with("_right");
+      found.push_back(c);
+      adult.emplace_back(isLeft ? 7 : isRight ? -7 : 0, l->y_mm, l->z_mm);
+    }
+  for (auto* cloud : {&found, &adult}) {
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& c : *cloud) mean += c / double(cloud->size());
+    for (Vec3& c : *cloud) c -= mean;
+  }
+  double best = 0, second = 0, ff = 0, aa = 0;
+  Mat3 choice = Mat3::Identity();
+  for (std::size_t k = 0; k < found.size(); ++k)
+    ff += found[k].squaredNorm(), aa += adult[k].squaredNorm();
+  for (const Mat3& r : axisRotations()) {
+    double fit = 0;
+    for (std::size_t k = 0; k < found.size(); ++k) fit += adult[k].dot(r * found[k]);
+    fit /= std::sqrt(ff * aa) + 1e-300;
+    if (fit > best) second = best, best = fit, choice = r;
+    else second = std::max(second, fit);
+  }
+  if (found.size() < 3 || best < kMinAxesFit || best - second < kMinAxesLead)
+    return usageError(place,
+                      fmt::format("the axes can't be guessed from {} structures of known place (fit "
+                                  "{:.2f}, second best {:.2f})", found.size(), best, second),
+                      "Say \"axes\": {\"x\": \"left\", \"y\": \"posterior\", \"z\": "
+                      "\"superior\"} in the mapping.");
+  return choice;
+}
+
+namespace {
+struct Loaded {
+  const ImportStructureDef* def;
+  std::vector<RawMesh> frames;
+};
+
+/// Files matching `tongue_%04d.obj`, by number; a gap in the numbers is an error.
+Result<std::vector<fs::path>> numberedFiles(const fs::path& pattern) {
+  const std::string name = pattern.filename().string();
+  const std::size_t start = name.find('%'), end = name.find('d', start);
+  const std::string head = name.substr(0, start), tail = name.substr(end + 1);
+  std::map<long, fs::path> byNumber;
+  std::error_code ec;
+  for (const auto& entry : fs::directory_iterator(pattern.parent_path(), ec)) {
+    const std::string n = entry.path().filename().string();
+    if (n.size() <= head.size() + tail.size() || !n.starts_with(head) || !n.ends_with(tail)) continue;
+    const std::string digits = n.substr(head.size(), n.size() - head.size() - tail.size());
+    long number = 0;
+    if (digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
+    parse(digits, number);
+    byNumber[number] = entry.path();
+  }
+  std::vector<fs::path> files;
+  for (const auto& [number, path] : byNumber) {
+    if (number != byNumber.begin()->first + long(files.size()))
+      return usageError(pattern.string(),
+                        fmt::format("frame {} is missing: the next is {}",
+                                    byNumber.begin()->first + long(files.size()),
+                                    path.filename().string()),
+                        "Number the frames without gaps.");
+    files.push_back(path);
+  }
+  if (files.empty())
+    return usageError(pattern.string(), "no file fits this pattern", "Check folder and name.");
+  return files;
+}
+
+Result<Loaded> load(const fs::path& source, const ImportStructureDef& def) {
+  std::error_code ec;
+  std::vector<fs::path> files;
+  for (const std::string& f : def.files) files.push_back(source / f);
+  if (fs::is_regular_file(source, ec)) files = {source};
+  if (files.empty())
+    return usageError(source.string(), fmt::format("{}: no \"file\" in the mapping", def.name),
+                      "Name its file, or give a mesh file as source.");
+  if (files.size() == 1 && files[0].filename().string().find('%') != std::string::npos) {
+    auto numbered = numberedFiles(files[0]);
+    if (!numbered) return std::unexpected(numbered.error());
+    files = std::move(*numbered);
+  }
+  Loaded loaded{.def = &def, .frames = {}};
+  for (const fs::path& file : files) {
+    auto mesh = readMeshFile(file, def.object);
+    if (!mesh) return std::unexpected(mesh.error());
+    loaded.frames.push_back(std::move(*mesh));
+  }
+  return loaded;
+}
+
+/// Unit and axes, given or guessed on all frames 0; then everything is moved to metres in our frame.
+Result<void> toOurFrame(const fs::path& source, const ImportDef& def, std::vector<Loaded>& all,
+                        std::vector<std::string>& report) {
+  std::map<std::string, double> extents;
+  std::map<std::string, Vec3> centres;
+  Eigen::AlignedBox3d whole;
+  for (const Loaded& l : all) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : l.frames[0].corners) box.extend(x);
+    whole.extend(box);
+    extents[l.def->name] = box.sizes().maxCoeff();
+    centres[l.def->name] = box.center();
+  }
+  double unit = def.unit == LengthUnit::mm ? 1e-3 : def.unit == LengthUnit::cm ? 1e-2 : 1;
+  if (def.unit == LengthUnit::guess) {
+    const auto guessed = guessUnit(extents, source.string());
+    if (!guessed) return std::unexpected(guessed.error());
+    unit = *guessed;
+  }
+  Mat3 axes = def.axes.oursFromFile;
+  if (def.axes.guess) {
+    const auto guessed = guessAxes(centres, source.string());
+    if (!guessed) return std::unexpected(guessed.error());
+    axes = *guessed;
+  }
+  const Vec3 size = whole.sizes();
+  report.push_back(fmt::format("unit {} {}: bounding box of all {:.4g} x {:.4g} x {:.4g} file units",
+                               unit == 1 ? "m" : unit == 1e-2 ? "cm" : "mm",
+                               def.unit == LengthUnit::guess ? "guessed" : "given", size.x(),
+                               size.y(), size.z()));
+  report.push_back(
+      fmt::format("axes {}: {}", def.axes.guess ? "guessed" : "given", axesText(axes)));
+  for (Loaded& l : all)
+    for (RawMesh& m : l.frames) {
+      for (Vec3& x : m.corners) x = axes * x * unit - def.origin_m;
+      if (axes.determinant() < 0)
+        for (auto& face : m.faces) std::reverse(face.begin(), face.end());
+    }
+  return {};
+}
+
+Result<void> build(const ImportDef& def, const Loaded& l, ImportedScene& out) {
+  const RawMesh& rest = l.frames.front();
+  const std::string& name = l.def->name;
+  const bool isSequence = l.frames.size() > 1;
+  if (rest.unusedVertices > 0)
+    out.report.push_back(fmt::format("{}: the last {} vertices are in no face: cut off?", rest.file,
+                                     rest.unusedVertices));
+  auto map = weldFrames(l.frames, out.report);
+  if (!map) return std::unexpected(map.error());
+  if (auto done = mirrorHalf(*map, rest, l.def->half, def.stitchTolerance_m, name, out.report); !done)
+    return done;
+  if (auto done = closeSurface(*map, rest, l.def->closure, isSequence, name, out.report); !done)
+    return done;
+  Structure s{.name = name, .material = l.def->material, .rigid = l.def->rigid,
+              .carrier = l.def->carrier, .drawOnly = l.def->closure == Closure::drawOnly,
+              .mesh = {map->apply(rest.corners), map->triangles}};
+  out.report.push_back(fmt::format("{}: {} vertices, {} triangles, {:.2f} cm3, from {}", name,
+                                   s.mesh.positions.size(), s.mesh.triangles.size(),
+                                   volume(s.mesh) * 1e6, rest.file));
+  out.anatomy.structures.push_back(std::move(s));
+  if (!isSequence) return {};
+  ImportedSequence sequence{.name = name, .frames = {}};
+  double farthest = 0;
+  for (const RawMesh& m : l.frames) {
+    if (const double shift = map->seamShift(m.corners); shift > def.stitchTolerance_m)
+      return usageError(m.file, fmt::format("its seam leaves the midsagittal plane by {:.2f} mm "
+                                            "(tolerance {:.2f} mm)", shift * 1e3,
+                                            def.stitchTolerance_m * 1e3),
+                        "Keep the cut of a half mesh in the plane, or raise stitch_tolerance_mm.");
+    sequence.frames.push_back(map->apply(m.corners));
+    const auto& now = sequence.frames.back();
+    const auto& before = sequence.frames[std::max<std::size_t>(sequence.frames.size(), 2) - 2];
+    for (std::size_t v = 0; v < now.size(); ++v)
+      farthest = std::max(farthest, (now[v] - before[v]).norm());
+  }
+  out.report.push_back(fmt::format("{}: {} frames with the same {} vertices and faces; no vertex "
+                                   "moves more than {:.2f} mm between frames", name,
+                                   l.frames.size(), map->corner.size(), farthest * 1e3));
+  out.sequences.push_back(std::move(sequence));
+  return {};
+}
+}  // namespace
+
+Result<ImportedScene> importMeshes(const fs::path& source, const ImportDef& def) {
+  std::vector<Loaded> all;
+  for (const ImportStructureDef& s : def.structures) {
+    auto loaded = load(source, s);
+    if (!loaded) return std::unexpected(loaded.error());
+    all.push_back(std::move(*loaded));
+  }
+  if (all.empty())
+    return usageError(source.string(), "the mapping names no structure", "Add to \"structures\".");
+  ImportedScene out{.anatomy = {}, .start_s = def.start_s, .rate_hz = def.rate_hz, .sequences = {},
+                    .report = {}};
+  out.anatomy.landmarks = def.landmarks;
+  if (auto moved = toOurFrame(source, def, all, out.report); !moved)
+    return std::unexpected(moved.error());
+  for (const Loaded& l : all)
+    if (auto built = build(def, l, out); !built) return std::unexpected(built.error());
+  return out;
+}
+}  // namespace swallowclip::anatomy

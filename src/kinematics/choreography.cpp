@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "kinematics/choreography.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swallowclip::kinematics {
+namespace {
+constexpr double kFrontRamp_m = 14e-3;       // length of the contact front's shoulder; assumed 10-20
+constexpr double kLarynxForwardGap = 1.0;    // share of anterior larynx travel that opens the lumen
+constexpr double kInvertedTip_m = 0.114;     // where the epiglottis meets the arytenoids; assumed
+constexpr double kArytenoidTilt_rad = 0.35;  // 20 degrees forward at closure; assumed 15-30
+const Vec3 kCricoarytenoidJoint_m(0, 28e-3, -96e-3);  // assumed, of the default scene
+
+// Smooth maximum of non-negative lengths (p-norm): C1 where the plain maximum has a kink.
+double smoothMax(std::initializer_list<double> values) {
+  double sum = 0;
+  for (double v : values) {
+    const double q = std::max(v, 0.0);
+    sum += q * q * q * q;
+  }
+  return std::sqrt(std::sqrt(sum));
+}
+}  // namespace
+
+double Track::at(double tau) const {
+  const double x = tau - delay_s - onset_s;
+  if (x <= 0) return 0;
+  const auto scaled = [&](double t) { return (t - onset_s) / speed; };
+  const double rise = peak_s > onset_s ? minimumJerk(x / scaled(peak_s)) : 1;
+  const double fall = offset_s > hold_s
+                          ? minimumJerk((x - scaled(hold_s)) / (scaled(offset_s) - scaled(hold_s)))
+                          : 0;
+  return amplitude * rise * (1 - fall);
+}
+
+const std::vector<std::string>& trackNames() {
+  static const std::vector<std::string> names{
+      "chute",          "velum",      "vocal_folds", "hyoid_pre",  "hyoid_superior",
+      "hyoid_anterior", "larynx_superior", "larynx_anterior", "arytenoid", "epiglottis",
+      "shortening",     "ppw_bulge",  "ues",         "tongue_return", "pharynx_return"};
+  return names;
+}
+
+const Track& SwallowDef::track(const std::string& key) const {
+  static const Track none{0, 0, 0, 0, 0, 0, 1};
+  const auto it = tracks.find(key);
+  return it == tracks.end() ? none : it->second;
+}
+
+Choreography::Choreography(const anatomy::Lumen& lumen, SwallowDef def)
+    : lumen_(lumen), def_(std::move(def)) {
+  // Room of the held bolus: depth follows from its footprint, by quadrature of the profile.
+  double footprint_m2 = 0;
+  const double ds = 0.5e-3, dx = 0.25e-3;
+  for (double at = 0; at < 0.08; at += ds)
+    for (double x = -def_.grooveHalfWidth_m; x < def_.grooveHalfWidth_m; x += dx) {
+      const double q = std::abs(x) / def_.grooveHalfWidth_m;
+      footprint_m2 += ds * dx * (1 - q * q * q) *
+                      plateau(at, def_.grooveStart_m, def_.grooveStart_m + 8e-3,
+                              def_.grooveEnd_m - 8e-3, def_.grooveEnd_m);
+    }
+  grooveDepth_m_ = def_.roomFactor * def_.volume_m3 / footprint_m2;
+}
+
+double Choreography::track(const char* name, double tau) const { return def_.track(name).at(tau); }
+
+double Choreography::restPosture(double s, double u) const {
+  // Tongue lies 2 mm under the palate, tongue base and hypopharynx stand open, UES shut; assumed.
+  static const Curve midline({0, 0.04, 0.07, 0.084, 0.094, 0.099, 0.1035, 0.108, 0.116, 0.126, 0.134, 0.142, 0.150, 0.186, 0.192, 0.205},
+                             {2e-3, 2e-3, 2e-3, 7e-3, 10e-3, 10.2e-3, 12.5e-3, 5.5e-3, 6.5e-3, 6e-3, 4e-3, 2e-3, 0, 0, 6e-3, 6e-3});
+  const double pyriform = 6e-3 * plateau(s, 0.122, 0.132, 0.141, 0.149) *
+                          plateau(std::abs(u), 0.5, 0.68, 0.8, 0.98);
+  return midline(s) * (1 - u * u) + pyriform;
+}
+
+double Choreography::chamber(double s, double u, double tau) const {
+  const double x = u * lumen_.def().halfWidth(s);
+  const double q = std::min(1.0, std::abs(x) / def_.grooveHalfWidth_m);
+  const double rockTime = tau + def_.bpm_s - def_.rockStart_s;
+  const double cycles = std::clamp(rockTime * def_.rockRate_hz, 0.0, def_.rockCycles);
+  const double shift = -def_.rockAmplitude_m * std::cos(2 * kPi * cycles) +
+                       (def_.rockCycles > 0 ? def_.rockAmplitude_m : 0.0);
+  const double groove = grooveDepth_m_ * (1 - q * q * q) *
+                        plateau(s - shift, def_.grooveStart_m, def_.grooveStart_m + 8e-3,
+                                def_.grooveEnd_m - 8e-3, def_.grooveEnd_m);
+  const double au = std::abs(u);
+  const double chute = 8e-3 * track("chute", tau) * plateau(s, 0.040, 0.052, 0.084, 0.096) *
+                       (1 - au * au * au);
+  const double larynxForward =
+      kLarynxForwardGap * track("larynx_anterior", tau) * plateau(s, 0.104, 0.12, 0.145, 0.153);
+  const double body = restPosture(s, u) * smoothstep((s - 0.072) / 0.012) + larynxForward * (1 - u * u);
+  const double ues = track("ues", tau) * plateau(s, 0.143, 0.151, 0.184, 0.190) *
+                     std::sqrt(std::max(0.0, 1 - u * u));
+  return smoothMax({groove, chute, body, ues});
+}
+
+double Choreography::release(double s, double tau) const {
+  const double tongue = track("tongue_return", tau), pharynx = track("pharynx_return", tau);
+  const double blend = smoothstep((s - 0.098) / 0.02);
+  return (1 - blend) * tongue + blend * pharynx;
+}
+
+anatomy::LumenPose Choreography::lumenPose(double t) const {
+  const anatomy::LumenDef& d = lumen_.def();
+  const double tau = t - def_.bpm_s;
+  anatomy::LumenPose p;
+  p.velumRaise = track("velum", tau);
+  const double up = track("larynx_superior", tau), forward = track("larynx_anterior", tau);
+  p.larynxShift_m = Vec3(0, -forward, up);
+  const double closure = track("arytenoid", tau), inversion = track("epiglottis", tau);
+  p.inletOpen = 1 - closure;
+  p.glottisOpen = 1 - track("vocal_folds", tau);
+  // Tissue of M: the tongue stays, the inlet folds shut, the larynx rises.
+  const double tip = d.epiglottisTip_m + inversion * (kInvertedTip_m - d.epiglottisTip_m);
+  const double arytenoidFree = d.arytenoid_m - up;
+  const double shut = tip + 2e-4;
+  const double arytenoid = arytenoidFree + closure * (shut - arytenoidFree);
+  const double end = d.length_m;
+  const Curve sigmaM({0, 0.099, d.tongueEnd_m, d.epiglottisTip_m, d.arytenoid_m, d.uesStart_m, 0.185, end},
+                     {0, 0.099, d.tongueEnd_m, tip, std::max(arytenoid, shut), std::max(d.uesStart_m - up, shut + 5e-3),
+                      0.185 - 0.8 * up, end});
+  const double lift = track("shortening", tau);
+  const Curve sigmaF({0, 0.090, d.uesStart_m, 0.185, end},
+                     {0, 0.090, d.uesStart_m - lift, 0.185 - 0.8 * lift, end});
+  const double frontAt = def_.frontAmplitude > 0 ? def_.front_m(tau) : -1.0;
+  const double bulge = track("ppw_bulge", tau);
+  p.gap_m.resize(static_cast<std::size_t>(lumen_.rows()) * lumen_.columns());
+  p.shear_m.assign(p.gap_m.size(), 0.0);
+  const double pocket = (1 - inversion) * (1 - smoothstep((frontAt - 0.085) / 0.012));
+  const double pocketAgain = track("pharynx_return", tau);
+  const double pocketOpen = std::max(pocket, std::min(1 - inversion, pocketAgain));
+  for (int r = 0; r < lumen_.rows(); ++r) {
+    const double s = lumen_.s(r);
+    p.sigmaM_m.push_back(sigmaM(s));
+    p.sigmaF_m.push_back(sigmaF(s));
+    p.bulge_m.push_back(bulge * plateau(s, frontAt - 0.03, frontAt - 0.005, frontAt + 0.005, frontAt + 0.03) *
+                        plateau(s, 0.088, 0.096, 0.14, 0.15));
+    const double open = smoothstep((s - frontAt) / kFrontRamp_m);
+    const double back = release(s, tau);
+    for (int c = 0; c < lumen_.columns(); ++c) {
+      const double u = lumen_.u(c), au = std::abs(u);
+      const int i = lumen_.index(r, c);
+      p.gap_m[i] = std::max(d.closedGap_m, open * chamber(s, u, tau) + (1 - open) * back * restPosture(s, u));
+      p.shear_m[i] = pocketOpen * 12e-3 * plateau(s, 0.0975, 0.1030, 0.1040, 0.1085) *
+                     plateau(au, -0.2, -0.05, 0.6, 0.95);
+    }
+  }
+  return p;
+}
+
+CarrierPoses Choreography::carriers(double t) const {
+  const double tau = t - def_.bpm_s;
+  CarrierPoses c;
+  c.hyoid.t = Vec3(0, -track("hyoid_anterior", tau),
+                   track("hyoid_superior", tau) + track("hyoid_pre", tau));
+  c.thyroid.t = Vec3(0, -track("larynx_anterior", tau), track("larynx_superior", tau));
+  c.cricoid = c.thyroid;
+  Pose tilt;
+  tilt.q = Quat(Eigen::AngleAxisd(kArytenoidTilt_rad * track("arytenoid", tau), Vec3::UnitX()));
+  tilt.t = kCricoarytenoidJoint_m - tilt.q * kCricoarytenoidJoint_m;
+  c.arytenoidL = c.arytenoidR = c.thyroid * tilt;
+  return c;
+}
+}  // namespace swallowclip::kinematics

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// One swallow as a timeline. Times in seconds; track times count from the planned BPM, which lies
+// `bpm_s` after the cue (time 0). Source of the defaults: scenes/swallows/normal.json.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/curve.h"
+
+namespace swallowclip::kinematics {
+
+/// Rise from 0 at onset to `amplitude` at peak, hold, return to 0 at offset (minimum jerk).
+/// `delay_s` shifts and `speed` divides the durations about the onset.
+struct Track {
+  double onset_s = 0, peak_s = 0, hold_s = 0, offset_s = 0;
+  double amplitude = 1, delay_s = 0, speed = 1;
+
+  double at(double tau_s) const;
+};
+
+struct SwallowDef {
+  std::string name, title;
+  int component = 0, score = -1;
+  double duration_s = 3.18;
+  double bpm_s = 1.2;
+  std::vector<double> cues_s{0};
+  std::map<std::string, Track> tracks;
+  Curve front_m;             ///< tail of the lumen's contact front (m along s) over tau
+  double frontAmplitude = 1; ///< 0: no wave at all
+  double volume_m3 = 5e-6;   ///< V0, the room of the held bolus follows it
+  double roomFactor = 1.2;   ///< held room / V0, DESIGN section 3: 1.15-1.3
+  double grooveStart_m = 4e-3, grooveEnd_m = 54e-3, grooveHalfWidth_m = 10.5e-3;
+  double rockAmplitude_m = 0, rockRate_hz = 1.2, rockCycles = 0, rockStart_s = 0;
+
+  const Track& track(const std::string& key) const;
+};
+
+/// Track keys that every swallow must define, with the unit of their amplitude.
+const std::vector<std::string>& trackNames();
+}  // namespace swallowclip::kinematics
