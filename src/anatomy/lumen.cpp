@@ -56,15 +56,30 @@ int Lumen::rowAt(double s_m) const {
   return std::clamp(static_cast<int>(std::lround(s_m / step_)), 0, rows_ - 1);
 }
 
+double Lumen::valleculaShear(double at, double uAt) const {
+  // 12 mm deep cups either side of the median fold; clinical-reference 5 has 8-10 mm, weak.
+  return 12e-3 * plateau(at, 0.0975, 0.1030, 0.1040, 0.1085) *
+         (0.75 + 0.25 * smoothstep(std::abs(uAt) / 0.3)) * (1 - smoothstep((std::abs(uAt) - 0.6) / 0.35));
+}
+
+double Lumen::pyriformGap(double at, double uAt) const {
+  // about 20 mm tall and 10 mm deep beside the larynx; clinical-reference 5, weak.
+  return 6e-3 * plateau(at, 0.122, 0.132, 0.141, 0.149) *
+         plateau(std::abs(uAt), 0.5, 0.68, 0.8, 0.98);
+}
+
 LumenPose Lumen::neutralPose() const {
   LumenPose p;
   p.bulge_m.assign(rows_, 0.0);
   p.gap_m.resize(static_cast<std::size_t>(rows_) * columns());
-  p.shear_m.assign(p.gap_m.size(), 0.0);
+  p.shear_m.resize(p.gap_m.size());
   for (int r = 0; r < rows_; ++r) {
     p.sigmaF_m.push_back(s(r));
-    for (int c = 0; c < columns(); ++c)
-      p.gap_m[index(r, c)] = std::max(def_.closedGap_m, def_.restGap(s(r)) * (1 - u(c) * u(c)));
+    for (int c = 0; c < columns(); ++c) {
+      const double gap_m = def_.restGap(s(r)) * (1 - u(c) * u(c)) + pyriformGap(s(r), u(c));
+      p.gap_m[index(r, c)] = std::max(def_.closedGap_m, gap_m);
+      p.shear_m[index(r, c)] = valleculaShear(s(r), u(c));
+    }
   }
   p.sigmaM_m = p.sigmaF_m;
   return p;
@@ -119,8 +134,16 @@ LumenSheets Lumen::evaluate(const LumenPose& pose) const {
       const double inner = 1 - u(c) * u(c);
       Vec3 nrm;
       const double at = s(r) + partner * inner + pose.shear_m[i];
-      const Vec3 foot = fixedPoint(std::clamp(at, 0.0, def_.length_m), u(c), &nrm);
-      out.m[i] = foot + nrm * std::max(pose.gap_m[i], def_.closedGap_m);
+      const double gap_m = std::max(pose.gap_m[i], def_.closedGap_m);
+      Vec3 foot = fixedPoint(std::clamp(at, 0.0, def_.length_m), u(c), &nrm);
+      // An open tongue does not copy the step from the hanging uvula to the wall behind it.
+      const double away = smoothstep((gap_m - 1e-3) / 5e-3) * plateau(at, 0.068, 0.078, 0.088, 0.100);
+      if (away > 0) {
+        Vec3 mean = Vec3::Zero();
+        for (int k = -4; k <= 4; ++k) mean += fixedPoint(at + k * 2.5e-3, u(c), nullptr) / 9;
+        foot += away * (mean - foot);
+      }
+      out.m[i] = foot + nrm * gap_m;
       if (r < velumFirst || r > velumLast) continue;
       Vec3 top = out.f[i] - out.fNormal[r] * def_.velumThickness(s(r)) * (1 - 0.6 * u(c) * u(c));
       const double wall_y = def_.nasalWallY(top.z()) - 3e-3 * archShape(u(c));  // assumed bow 3 mm

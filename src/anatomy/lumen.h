@@ -78,6 +78,11 @@ class Lumen {
   int rowAt(double s_m) const;
   int index(int row, int column) const { return row * def_.columns + column; }
 
+  /// Pockets of the M sheet at rest: the slip that makes the vallecular floor, m, and the depth
+  /// that the pyriform sinuses add to the gap, m.
+  double valleculaShear(double s_m, double u) const;
+  double pyriformGap(double s_m, double u) const;
+
   /// Neutral bind pose: nothing displaced, every gap at rest width.
   LumenPose neutralPose() const;
   LumenSheets evaluate(const LumenPose& pose) const;

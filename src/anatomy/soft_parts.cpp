@@ -11,12 +11,11 @@ namespace swallowclip::anatomy {
 namespace {
 constexpr int kUnderside = 11;  // vertices from the tongue's lateral edge round to the other one
 
-// Closed tube over `stations` rings of `ring` vertices: ends are closed by rungs between the two
-// sides, so no vertex is added. `flip` turns the surface inside out.
+// Closed tube over `stations` rings of `ring` vertices, the first `top` of which run from right to
+// left over the upper face. Ends are zipped between upper and lower face, so no vertex is added.
 std::vector<Triangle> tubeTriangles(int stations, int ring, int top, bool flip) {
   std::vector<Triangle> t;
   const auto add = [&](int a, int b, int c) {
-    if (a == b || b == c || c == a) return;
     t.push_back(flip ? Triangle{a, c, b} : Triangle{a, b, c});
   };
   const auto at = [&](int i, int j) { return i * ring + (j % ring + ring) % ring; };
@@ -25,18 +24,20 @@ std::vector<Triangle> tubeTriangles(int stations, int ring, int top, bool flip) 
       add(at(i, j), at(i, j + 1), at(i + 1, j));
       add(at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
     }
-  // Rungs pair vertex j with ring - 1 - j + shift, mirror images of each other.
-  const int shift = top - 1;
-  for (int end = 0; end < 2; ++end) {
-    const int i = end == 0 ? 0 : stations - 1;
-    const auto cap = [&](int a, int b, int c) { end == 0 ? add(a, c, b) : add(a, b, c); };
-    // left index j runs down from the middle of the top, mirror runs up
-    const int mid = top / 2;
-    for (int k = 0; k < ring / 2; ++k) {
-      const int a = at(i, mid + k), b = at(i, mid + k + 1);
-      const int ma = at(i, shift - (mid + k)), mb = at(i, shift - (mid + k + 1));
-      cap(a, b, ma);
-      if (b != mb) cap(ma, b, mb);
+  const int bottom = ring - top;
+  for (int i : {0, stations - 1}) {
+    const auto cap = [&](int a, int b, int c) { i == 0 ? add(a, c, b) : add(a, b, c); };
+    int u = 0, l = 0;  // steps taken along the upper and the lower chain
+    while (u < top - 1 || l < bottom - 1) {
+      const bool upper = l == bottom - 1 || (u < top - 1 && (u + 1) * (bottom - 1) <= (l + 1) * (top - 1));
+      const int a = at(i, u), b = at(i, ring - 1 - l);
+      if (upper) {
+        cap(a, at(i, u + 1), b);
+        ++u;
+      } else {
+        cap(a, at(i, ring - 2 - l), b);
+        ++l;
+      }
     }
   }
   return t;
@@ -77,9 +78,9 @@ std::vector<Vec3> SoftParts::tongue(const LumenSheets& sheets, const SoftPose& p
     const double at = lumen_.s(r);
     const Vec3 top = sheets.m[lumen_.index(r, nc / 2)];
     Vec3 floor(0, def_.tongueFloorY(at), def_.tongueFloorZ(at));
-    floor += pose.hyoidShift_m * smoothstep((at - 0.030) / 0.060);
+    floor += pose.hyoidShift_m * smoothstep((at - 0.005) / 0.085);
     const Vec3 down = (floor - top).normalized();
-    const double free = smoothstep((at - 0.010) / 0.020) * (1 - smoothstep((at - 0.085) / 0.019));
+    const double free = smoothstep(at / 0.045) * (1 - smoothstep((at - 0.080) / 0.024));
     floor += down * bulge_m * free;
     for (int c = 0; c < nc; ++c) p.push_back(sheets.m[lumen_.index(r, c)]);
     const double half = widthScale_ * def_.tongueHalfWidth(at) + 0.35 * bulge_m * free;

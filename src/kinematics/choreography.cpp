@@ -31,19 +31,21 @@ double Track::at(double tau) const {
   const double fall = offset_s > hold_s
                           ? minimumJerk((x - scaled(hold_s)) / (scaled(offset_s) - scaled(hold_s)))
                           : 0;
-  return amplitude * rise * (1 - fall);
+  return amplitude * peakValue * rise * (1 - fall);
 }
 
-const std::vector<std::string>& trackNames() {
-  static const std::vector<std::string> names{
-      "chute",          "velum",      "vocal_folds", "hyoid_pre",  "hyoid_superior",
-      "hyoid_anterior", "larynx_superior", "larynx_anterior", "arytenoid", "epiglottis",
-      "shortening",     "ppw_bulge",  "ues",         "tongue_return", "pharynx_return"};
-  return names;
+const std::vector<TrackKind>& trackKinds() {
+  static const std::vector<TrackKind> kinds{
+      {"chute", true},           {"velum", false},           {"vocal_folds", false},
+      {"hyoid_pre", true},       {"hyoid_superior", true},   {"hyoid_anterior", true},
+      {"larynx_superior", true}, {"larynx_anterior", true},  {"arytenoid", false},
+      {"epiglottis", false},     {"shortening", true},       {"ppw_bulge", true},
+      {"ues", true},             {"tongue_return", false},   {"pharynx_return", false}};
+  return kinds;
 }
 
 const Track& SwallowDef::track(const std::string& key) const {
-  static const Track none{0, 0, 0, 0, 0, 0, 1};
+  static const Track none{0, 0, 0, 0, 0, 0, 0, 1};
   const auto it = tracks.find(key);
   return it == tracks.end() ? none : it->second;
 }
@@ -69,9 +71,7 @@ double Choreography::restPosture(double s, double u) const {
   // Tongue lies 2 mm under the palate, tongue base and hypopharynx stand open, UES shut; assumed.
   static const Curve midline({0, 0.04, 0.07, 0.084, 0.094, 0.099, 0.1035, 0.108, 0.116, 0.126, 0.134, 0.142, 0.150, 0.186, 0.192, 0.205},
                              {2e-3, 2e-3, 2e-3, 7e-3, 10e-3, 10.2e-3, 12.5e-3, 5.5e-3, 6.5e-3, 6e-3, 4e-3, 2e-3, 0, 0, 6e-3, 6e-3});
-  const double pyriform = 6e-3 * plateau(s, 0.122, 0.132, 0.141, 0.149) *
-                          plateau(std::abs(u), 0.5, 0.68, 0.8, 0.98);
-  return midline(s) * (1 - u * u) + pyriform;
+  return midline(s) * (1 - u * u) + lumen_.pyriformGap(s, u);
 }
 
 double Choreography::chamber(double s, double u, double tau) const {
@@ -85,7 +85,7 @@ double Choreography::chamber(double s, double u, double tau) const {
                         plateau(s - shift, def_.grooveStart_m, def_.grooveStart_m + 8e-3,
                                 def_.grooveEnd_m - 8e-3, def_.grooveEnd_m);
   const double au = std::abs(u);
-  const double chute = 8e-3 * track("chute", tau) * plateau(s, 0.040, 0.052, 0.084, 0.096) *
+  const double chute = track("chute", tau) * plateau(s, 0.040, 0.052, 0.084, 0.096) *
                        (1 - au * au * au);
   const double larynxForward =
       kLarynxForwardGap * track("larynx_anterior", tau) * plateau(s, 0.104, 0.12, 0.145, 0.153);
@@ -139,11 +139,10 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
     const double open = smoothstep((s - frontAt) / kFrontRamp_m);
     const double back = release(s, tau);
     for (int c = 0; c < lumen_.columns(); ++c) {
-      const double u = lumen_.u(c), au = std::abs(u);
+      const double u = lumen_.u(c);
       const int i = lumen_.index(r, c);
       p.gap_m[i] = std::max(d.closedGap_m, open * chamber(s, u, tau) + (1 - open) * back * restPosture(s, u));
-      p.shear_m[i] = pocketOpen * 12e-3 * plateau(s, 0.0975, 0.1030, 0.1040, 0.1085) *
-                     plateau(au, -0.2, -0.05, 0.6, 0.95);
+      p.shear_m[i] = pocketOpen * lumen_.valleculaShear(s, u);
     }
   }
   return p;

@@ -10,11 +10,12 @@
 
 namespace swallowclip::kinematics {
 
-/// Rise from 0 at onset to `amplitude` at peak, hold, return to 0 at offset (minimum jerk).
-/// `delay_s` shifts and `speed` divides the durations about the onset.
+/// Rise from 0 at onset to `amplitude * peakValue` at peak, hold, return to 0 at offset (minimum
+/// jerk). `peakValue` is a length in m or a ratio, `amplitude` the gain of a score file; `delay_s`
+/// shifts and `speed` divides the durations about the onset.
 struct Track {
   double onset_s = 0, peak_s = 0, hold_s = 0, offset_s = 0;
-  double amplitude = 1, delay_s = 0, speed = 1;
+  double peakValue = 1, amplitude = 1, delay_s = 0, speed = 1;
 
   double at(double tau_s) const;
 };
@@ -36,6 +37,10 @@ struct SwallowDef {
   const Track& track(const std::string& key) const;
 };
 
-/// Track keys that every swallow must define, with the unit of their amplitude.
-const std::vector<std::string>& trackNames();
+/// The tracks that a swallow may define, and whether their peak is a length (else a ratio 0..1).
+struct TrackKind {
+  std::string name;
+  bool length;
+};
+const std::vector<TrackKind>& trackKinds();
 }  // namespace swallowclip::kinematics

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Swallow files: a full timeline, or a "base" file plus what differs from it.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "kinematics/swallow_def.h"
+
+namespace swallowclip::scene {
+
+Result<kinematics::SwallowDef> loadSwallow(const std::filesystem::path& path);
+
+/// Applies "track.key=value" (keys onset_s, peak_s, hold_s, offset_s, amplitude, delay_s, speed).
+Result<void> applySet(kinematics::SwallowDef& swallow, const std::string& assignment);
+}  // namespace swallowclip::scene
