@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "anatomy/mesh_import.h"
 
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <charconv>
 #include <cmath>
@@ -53,7 +53,8 @@ bool parse(std::string_view w, T& value) {
   return std::from_chars(w.data(), w.data() + w.size(), value).ec == std::errc();
 }
 
-/// What readers let pass in an OBJ: numbers that are none, faces cut off, vertices that aren't there.
+/// What readers let pass in an OBJ: numbers that are none, faces cut off, vertices that aren't
+/// there.
 Result<void> checkObj(std::string_view text, const std::string& file, RawMesh& mesh) {
   int vertices = 0, number = 0, farthestLine = 0;
   long farthest = 0;
@@ -66,8 +67,9 @@ Result<void> checkObj(std::string_view text, const std::string& file, RawMesh& m
     const std::string place = fmt::format("{}:{}", file, number);
     const std::vector<std::string_view> w = words(line.substr(2));
     if (w.size() < 3)
-      return usageError(place, fmt::format("{} with {} of 3 or more numbers: cut off?",
-                                           isVertex ? "a vertex" : "a face", w.size()),
+      return usageError(place,
+                        fmt::format("{} with {} of 3 or more numbers: cut off?",
+                                    isVertex ? "a vertex" : "a face", w.size()),
                         kExportAgain);
     if (isVertex) {
       ++vertices;
@@ -85,9 +87,10 @@ Result<void> checkObj(std::string_view text, const std::string& file, RawMesh& m
     }
   }
   if (farthest > vertices)
-    return usageError(fmt::format("{}:{}", file, farthestLine),
-                      fmt::format("a face names vertex {}, but the file has {}", farthest, vertices),
-                      kExportAgain);
+    return usageError(
+        fmt::format("{}:{}", file, farthestLine),
+        fmt::format("a face names vertex {}, but the file has {}", farthest, vertices),
+        kExportAgain);
   mesh.fileVertices = vertices;
   mesh.unusedVertices = farthest > 0 ? vertices - int(farthest) : 0;
   return {};
@@ -96,8 +99,8 @@ Result<void> checkObj(std::string_view text, const std::string& file, RawMesh& m
 /// Compares the counts a PLY header claims with the bytes that follow.
 Result<void> checkPly(std::string_view text, const std::string& file) {
   static const std::map<std::string_view, int> sizes{
-      {"char", 1},  {"uchar", 1}, {"int8", 1},   {"uint8", 1},   {"short", 2},   {"ushort", 2},
-      {"int16", 2}, {"uint16", 2}, {"int", 4},   {"uint", 4},    {"int32", 4},   {"uint32", 4},
+      {"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},  {"short", 2}, {"ushort", 2},
+      {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},   {"int32", 4}, {"uint32", 4},
       {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
   bool ascii = false, ended = false;
   double count = 0, needed = 0;
@@ -193,7 +196,8 @@ Result<RawMesh> readMeshFile(const fs::path& path, const std::string& object) {
     // no post-processing: joining and triangulating would differ from frame to frame
     const aiScene* scene = importer.ReadFile(file, 0);
     if (!scene || !scene->mRootNode)
-      return usageError(file, fmt::format("can't be read as a mesh ({})", importer.GetErrorString()),
+      return usageError(file,
+                        fmt::format("can't be read as a mesh ({})", importer.GetErrorString()),
                         "Export it as OBJ, PLY, STL or glTF.");
     collect(*scene, *scene->mRootNode, aiMatrix4x4(), false, object, mesh);
     if (!object.empty() && mesh.faces.empty()) {
@@ -223,18 +227,19 @@ struct Layout {
   double extent_mm, y_mm, z_mm;
 };
 constexpr Layout kLayout[] = {
-    {"mandible", 120, -9, -26},    {"maxilla", 125, -28, 0},     {"lower_teeth", 60, -35, -30},
-    {"upper_teeth", 60, -35, -20}, {"tongue", 75, -12, -37},     {"soft_palate", 55, 14, -20},
-    {"velum", 55, 14, -20},        {"face", 150, -22, -28},      {"hyoid", 53, 13, -63},
-    {"epiglottis", 35, 20, -65},   {"thyroid", 50, 14, -88},     {"cricoid", 32, 20, -105},
-    {"arytenoid", 16, 24, -88},    {"larynx", 55, 18, -75},      {"trachea", 100, 20, -150},
-    {"pharyn", 70, 28, -40},       {"airway", 110, -18, -43},    {"c1", 88, 60, -18},
-    {"c2", 62, 63, -32},           {"c3", 62, 60, -57},          {"c4", 60, 61, -74},
-    {"c5", 62, 65, -92},           {"c6", 68, 70, -107},         {"c7", 75, 78, -125},
-    {"disc_c2", 18, 44, -47},      {"disc_c3", 28, 45, -65},     {"disc_c4", 27, 46, -85},
+    {"mandible", 120, -9, -26},    {"maxilla", 125, -28, 0},  {"lower_teeth", 60, -35, -30},
+    {"upper_teeth", 60, -35, -20}, {"tongue", 75, -12, -37},  {"soft_palate", 55, 14, -20},
+    {"velum", 55, 14, -20},        {"face", 150, -22, -28},   {"hyoid", 53, 13, -63},
+    {"epiglottis", 35, 20, -65},   {"thyroid", 50, 14, -88},  {"cricoid", 32, 20, -105},
+    {"arytenoid", 16, 24, -88},    {"larynx", 55, 18, -75},   {"trachea", 100, 20, -150},
+    {"pharyn", 70, 28, -40},       {"airway", 110, -18, -43}, {"c1", 88, 60, -18},
+    {"c2", 62, 63, -32},           {"c3", 62, 60, -57},       {"c4", 60, 61, -74},
+    {"c5", 62, 65, -92},           {"c6", 68, 70, -107},      {"c7", 75, 78, -125},
+    {"disc_c2", 18, 44, -47},      {"disc_c3", 28, 45, -65},  {"disc_c4", 27, 46, -85},
     {"disc_c5", 28, 48, -103},     {"disc_c6", 27, 54, -118}};
 constexpr double kMaxUnitMisfit = 0.4;  ///< log10 of the factor 2.5; unit steps are 10 and 100
-/// Alignment of file and adult layout (cosine): least accepted, and least lead over the second best.
+/// Alignment of file and adult layout (cosine): least accepted, and least lead over the second
+/// best.
 constexpr double kMinAxesFit = 0.8, kMinAxesLead = 0.05;  // assumed, 0.7..0.9 and 0.03..0.1
 
 const Layout* layoutOf(std::string_view name) {
@@ -283,10 +288,12 @@ Result<double> guessUnit(const std::map<std::string, double>& extents, const std
   const double vote = misfits[misfits.size() / 2];
   for (const double unit : {1e-3, 1e-2, 1.0})
     if (std::abs(vote - std::log10(unit)) < kMaxUnitMisfit) return unit;
-  return usageError(place,
-                    fmt::format("the unit can't be guessed: adult size needs {:.3g} m per file unit, "
-                                "neither mm, cm nor m", std::pow(10.0, vote)),
-                    remedy);
+  return usageError(
+      place,
+      fmt::format("the unit can't be guessed: adult size needs {:.3g} m per file unit, "
+                  "neither mm, cm nor m",
+                  std::pow(10.0, vote)),
+      remedy);
 }
 
 Result<Mat3> guessAxes(const std::map<std::string, Vec3>& centres, const std::string& place) {
@@ -311,15 +318,19 @@ Result<Mat3> guessAxes(const std::map<std::string, Vec3>& centres, const std::st
     double fit = 0;
     for (std::size_t k = 0; k < found.size(); ++k) fit += adult[k].dot(r * found[k]);
     fit /= std::sqrt(ff * aa) + 1e-300;
-    if (fit > best) second = best, best = fit, choice = r;
-    else second = std::max(second, fit);
+    if (fit > best)
+      second = best, best = fit, choice = r;
+    else
+      second = std::max(second, fit);
   }
   if (found.size() < 3 || best < kMinAxesFit || best - second < kMinAxesLead)
-    return usageError(place,
-                      fmt::format("the axes can't be guessed from {} structures of known place (fit "
-                                  "{:.2f}, second best {:.2f})", found.size(), best, second),
-                      "Say \"axes\": {\"x\": \"left\", \"y\": \"posterior\", \"z\": "
-                      "\"superior\"} in the mapping.");
+    return usageError(
+        place,
+        fmt::format("the axes can't be guessed from {} structures of known place (fit "
+                    "{:.2f}, second best {:.2f})",
+                    found.size(), best, second),
+        "Say \"axes\": {\"x\": \"left\", \"y\": \"posterior\", \"z\": "
+        "\"superior\"} in the mapping.");
   return choice;
 }
 
@@ -338,7 +349,8 @@ Result<std::vector<fs::path>> numberedFiles(const fs::path& pattern) {
   std::error_code ec;
   for (const auto& entry : fs::directory_iterator(pattern.parent_path(), ec)) {
     const std::string n = entry.path().filename().string();
-    if (n.size() <= head.size() + tail.size() || !n.starts_with(head) || !n.ends_with(tail)) continue;
+    if (n.size() <= head.size() + tail.size() || !n.starts_with(head) || !n.ends_with(tail))
+      continue;
     const std::string digits = n.substr(head.size(), n.size() - head.size() - tail.size());
     long number = 0;
     if (digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
@@ -348,11 +360,11 @@ Result<std::vector<fs::path>> numberedFiles(const fs::path& pattern) {
   std::vector<fs::path> files;
   for (const auto& [number, path] : byNumber) {
     if (number != byNumber.begin()->first + long(files.size()))
-      return usageError(pattern.string(),
-                        fmt::format("frame {} is missing: the next is {}",
-                                    byNumber.begin()->first + long(files.size()),
-                                    path.filename().string()),
-                        "Number the frames without gaps.");
+      return usageError(
+          pattern.string(),
+          fmt::format("frame {} is missing: the next is {}",
+                      byNumber.begin()->first + long(files.size()), path.filename().string()),
+          "Number the frames without gaps.");
     files.push_back(path);
   }
   if (files.empty())
@@ -382,7 +394,8 @@ Result<Loaded> load(const fs::path& source, const ImportStructureDef& def) {
   return loaded;
 }
 
-/// Unit and axes, given or guessed on all frames 0; then everything is moved to metres in our frame.
+/// Unit and axes, given or guessed on all frames 0; then everything is moved to metres in our
+/// frame.
 Result<void> toOurFrame(const fs::path& source, const ImportDef& def, std::vector<Loaded>& all,
                         std::vector<std::string>& report) {
   std::map<std::string, double> extents;
@@ -408,10 +421,12 @@ Result<void> toOurFrame(const fs::path& source, const ImportDef& def, std::vecto
     axes = *guessed;
   }
   const Vec3 size = whole.sizes();
-  report.push_back(fmt::format("unit {} {}: bounding box of all {:.4g} x {:.4g} x {:.4g} file units",
-                               unit == 1 ? "m" : unit == 1e-2 ? "cm" : "mm",
-                               def.unit == LengthUnit::guess ? "guessed" : "given", size.x(),
-                               size.y(), size.z()));
+  report.push_back(fmt::format(
+      "unit {} {}: bounding box of all {:.4g} x {:.4g} x {:.4g} file units",
+      unit == 1      ? "m"
+      : unit == 1e-2 ? "cm"
+                     : "mm",
+      def.unit == LengthUnit::guess ? "guessed" : "given", size.x(), size.y(), size.z()));
   report.push_back(
       fmt::format("axes {}: {}", def.axes.guess ? "guessed" : "given", axesText(axes)));
   for (Loaded& l : all)
@@ -432,25 +447,33 @@ Result<void> build(const ImportDef& def, const Loaded& l, ImportedScene& out) {
                                      rest.unusedVertices));
   auto map = weldFrames(l.frames, out.report);
   if (!map) return std::unexpected(map.error());
-  if (auto done = mirrorHalf(*map, rest, l.def->half, def.stitchTolerance_m, name, out.report); !done)
+  if (auto done = mirrorHalf(*map, rest, l.def->half, def.stitchTolerance_m, name, out.report);
+      !done)
     return done;
   if (auto done = closeSurface(*map, rest, l.def->closure, isSequence, name, out.report); !done)
     return done;
-  Structure s{.name = name, .material = l.def->material, .rigid = l.def->rigid,
-              .carrier = l.def->carrier, .drawOnly = l.def->closure == Closure::drawOnly,
+  Structure s{.name = name,
+              .material = l.def->material,
+              .rigid = l.def->rigid,
+              .carrier = l.def->carrier,
+              .drawOnly = l.def->closure == SurfaceClosure::drawOnly,
               .mesh = {map->apply(rest.corners), map->triangles}};
-  out.report.push_back(fmt::format("{}: {} vertices, {} triangles, {:.2f} cm3, from {}", name,
-                                   s.mesh.positions.size(), s.mesh.triangles.size(),
-                                   volume(s.mesh) * 1e6, rest.file));
+  const std::string size = checkManifold(s.mesh.triangles, int(s.mesh.positions.size())).closed()
+                               ? fmt::format("{:.2f} cm3", volume(s.mesh) * 1e6)
+                               : "open";
+  out.report.push_back(fmt::format("{}: {} vertices, {} triangles, {}, from {}", name,
+                                   s.mesh.positions.size(), s.mesh.triangles.size(), size,
+                                   fs::path(rest.file).filename().string()));
   out.anatomy.structures.push_back(std::move(s));
   if (!isSequence) return {};
   ImportedSequence sequence{.name = name, .frames = {}};
   double farthest = 0;
   for (const RawMesh& m : l.frames) {
     if (const double shift = map->seamShift(m.corners); shift > def.stitchTolerance_m)
-      return usageError(m.file, fmt::format("its seam leaves the midsagittal plane by {:.2f} mm "
-                                            "(tolerance {:.2f} mm)", shift * 1e3,
-                                            def.stitchTolerance_m * 1e3),
+      return usageError(m.file,
+                        fmt::format("its seam leaves the midsagittal plane by {:.2f} mm "
+                                    "(tolerance {:.2f} mm)",
+                                    shift * 1e3, def.stitchTolerance_m * 1e3),
                         "Keep the cut of a half mesh in the plane, or raise stitch_tolerance_mm.");
     sequence.frames.push_back(map->apply(m.corners));
     const auto& now = sequence.frames.back();
@@ -458,9 +481,10 @@ Result<void> build(const ImportDef& def, const Loaded& l, ImportedScene& out) {
     for (std::size_t v = 0; v < now.size(); ++v)
       farthest = std::max(farthest, (now[v] - before[v]).norm());
   }
-  out.report.push_back(fmt::format("{}: {} frames with the same {} vertices and faces; no vertex "
-                                   "moves more than {:.2f} mm between frames", name,
-                                   l.frames.size(), map->corner.size(), farthest * 1e3));
+  out.report.push_back(
+      fmt::format("{}: {} frames with the same {} vertices and faces; no vertex "
+                  "moves more than {:.2f} mm between frames",
+                  name, l.frames.size(), map->corner.size(), farthest * 1e3));
   out.sequences.push_back(std::move(sequence));
   return {};
 }
@@ -475,8 +499,8 @@ Result<ImportedScene> importMeshes(const fs::path& source, const ImportDef& def)
   }
   if (all.empty())
     return usageError(source.string(), "the mapping names no structure", "Add to \"structures\".");
-  ImportedScene out{.anatomy = {}, .start_s = def.start_s, .rate_hz = def.rate_hz, .sequences = {},
-                    .report = {}};
+  ImportedScene out{
+      .anatomy = {}, .start_s = def.start_s, .rate_hz = def.rate_hz, .sequences = {}, .report = {}};
   out.anatomy.landmarks = def.landmarks;
   if (auto moved = toOurFrame(source, def, all, out.report); !moved)
     return std::unexpected(moved.error());

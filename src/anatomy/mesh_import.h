@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Meshes of other people made into an Anatomy: any file that assimp reads, half-cut or whole, in any
-// unit and axes, still or as numbered files. What was assumed, guessed or mended is said in `report`.
-// In: files and an ImportDef (scene/mapping_file reads it from JSON). Out: metres, frame of core/vec.h.
+// Meshes of other people made into an Anatomy: any file that assimp reads, half-cut or whole, in
+// any unit and axes, still or as numbered files. What was assumed, guessed or mended is said in
+// `report`. In: files and an ImportDef (scene/mapping_file reads it from JSON). Out: metres, frame
+// of core/vec.h.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -18,7 +19,8 @@ enum class LengthUnit { mm, cm, m, guess };
 
 struct AxesDef {
   bool guess = true;
-  Mat3 oursFromFile = Mat3::Identity();  ///< signed permutation; a mirroring one turns triangles round
+  Mat3 oursFromFile =
+      Mat3::Identity();  ///< signed permutation; a mirroring one turns triangles round
 };
 
 struct ImportStructureDef {
@@ -31,15 +33,15 @@ struct ImportStructureDef {
   bool rigid = true;
   Carrier carrier = Carrier::skull;
   HalfSide half = HalfSide::guess;
-  Closure closure = Closure::requireClosed;
+  SurfaceClosure closure = SurfaceClosure::requireClosed;
 };
 
 struct ImportDef {
   LengthUnit unit = LengthUnit::guess;
   AxesDef axes;
-  Vec3 origin_m = Vec3::Zero();      ///< point of the turned file that becomes our origin (PNS)
-  double stitchTolerance_m = 0.2e-3; ///< to the midsagittal plane; assumed, sensible 0.05-0.5 mm
-  double start_s = 0, rate_hz = 34;  ///< of sequences; 34/s as kinematics/mesh_sequence.h
+  Vec3 origin_m = Vec3::Zero();       ///< point of the turned file that becomes our origin (PNS)
+  double stitchTolerance_m = 0.2e-3;  ///< to the midsagittal plane; assumed, sensible 0.05-0.5 mm
+  double start_s = 0, rate_hz = 34;   ///< of sequences; 34/s as kinematics/mesh_sequence.h
   std::map<std::string, Vec3> landmarks;  ///< already in our frame, m
   std::vector<ImportStructureDef> structures;
 };

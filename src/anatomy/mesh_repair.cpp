@@ -110,7 +110,8 @@ struct SharedEdge {
   int a0, a1, b0, b1;  ///< edge a0-b0 in one triangle, a1-b1 in the other
 };
 
-std::vector<SharedEdge> sharedEdges(std::span<const Triangle> corners, std::span<const int> leader) {
+std::vector<SharedEdge> sharedEdges(std::span<const Triangle> corners,
+                                    std::span<const int> leader) {
   struct Use {
     int a, b;
   };
@@ -133,11 +134,11 @@ Result<void> checkCounts(const RawMesh& first, const RawMesh& m) {
       "Export all frames from one mesh, without modifiers that add or reorder vertices.";
   if (m.fileVertices != first.fileVertices || m.faces.size() != first.faces.size() ||
       m.corners.size() != first.corners.size())
-    return usageError(m.file,
-                      fmt::format("has {} vertices and {} faces, but frame 0 ({}) has {} and {}",
-                                  m.fileVertices, m.faces.size(), first.file, first.fileVertices,
-                                  first.faces.size()),
-                      remedy);
+    return usageError(
+        m.file,
+        fmt::format("has {} vertices and {} faces, but frame 0 ({}) has {} and {}", m.fileVertices,
+                    m.faces.size(), first.file, first.fileVertices, first.faces.size()),
+        remedy);
   for (std::size_t f = 0; f < m.faces.size(); ++f)
     if (m.faces[f] != first.faces[f])
       return usageError(m.file,
@@ -198,8 +199,8 @@ int separateTouching(std::span<const RawMesh> frames, std::span<const SharedEdge
         return true;
       };
       const auto it = std::find_if(leaders.begin(), leaders.end(), together);
-      if (it == leaders.end()) leaders.push_back(fan);
       fanLeader[fan] = it == leaders.end() ? fan : *it;
+      if (it == leaders.end()) leaders.push_back(fan);
     }
     added += int(leaders.size()) - 1;
   }
@@ -256,8 +257,8 @@ Result<SurfaceMap> weldFrames(std::span<const RawMesh> frames, std::vector<std::
   }
   if (frames.size() > 1)
     if (const int parted = separateTouching(frames, shared, leader); parted > 0)
-      report.push_back(fmt::format("{}: {} vertices only touch on frame 0 and part later; kept apart",
-                                   first.file, parted));
+      report.push_back(fmt::format(
+          "{}: {} vertices only touch on frame 0 and part later; kept apart", first.file, parted));
   SurfaceMap map;
   for (int i = 0; i < int(leader.size()); ++i) map.corner.push_back(i);
   map.mirrored.assign(leader.size(), 0);
@@ -272,8 +273,7 @@ Result<SurfaceMap> weldFrames(std::span<const RawMesh> frames, std::vector<std::
   }
   compact(map);
   if (collapsed > 0)
-    report.push_back(
-        fmt::format("{}: {} triangles without area left out", first.file, collapsed));
+    report.push_back(fmt::format("{}: {} triangles without area left out", first.file, collapsed));
   if (map.triangles.empty())
     return usageError(first.file, "has no triangle with an area", "Export its faces too.");
   return map;
@@ -299,8 +299,9 @@ Result<void> mirrorHalf(SurfaceMap& map, const RawMesh& rest, HalfSide side, dou
   if (side == HalfSide::guess) {
     if (!cut || (lo < -tolerance_m) == (hi > tolerance_m)) return {};
     side = hi > tolerance_m ? HalfSide::left : HalfSide::right;
-    report.push_back(fmt::format("{}: guessed to be a {} half (all on one side of x = 0, cut there)",
-                                 name, side == HalfSide::left ? "left" : "right"));
+    report.push_back(
+        fmt::format("{}: guessed to be a {} half (all on one side of x = 0, cut there)", name,
+                    side == HalfSide::left ? "left" : "right"));
   }
   const double beyond = side == HalfSide::left ? -lo : hi;
   if (beyond > tolerance_m || !cut)
@@ -311,9 +312,8 @@ Result<void> mirrorHalf(SurfaceMap& map, const RawMesh& rest, HalfSide side, dou
                     name, side == HalfSide::left ? "left" : "right", lo * 1e3, hi * 1e3,
                     caps + openInPlane, tolerance_m * 1e3),
         "Set \"half\" to \"whole\", or \"origin_mm\" and \"axes\" so that the cut lies on x = 0.");
-  std::erase_if(map.triangles, [&](const Triangle& t) {
-    return inPlane(t[0]) && inPlane(t[1]) && inPlane(t[2]);
-  });
+  std::erase_if(map.triangles,
+                [&](const Triangle& t) { return inPlane(t[0]) && inPlane(t[1]) && inPlane(t[2]); });
   for (std::size_t v = 0; v < p.size(); ++v) map.onPlane[v] = inPlane(int(v));
   compact(map);
   const int n = int(map.corner.size());
@@ -332,7 +332,8 @@ Result<void> mirrorHalf(SurfaceMap& map, const RawMesh& rest, HalfSide side, dou
   }
   const int added = int(map.corner.size()) - n;
   report.push_back(fmt::format(
-      "{}: {} midsagittal faces removed, {} vertices mirrored, {} stitched on the seam (moved by at "
+      "{}: {} midsagittal faces removed, {} vertices mirrored, {} stitched on the seam (moved by "
+      "at "
       "most {:.3f} mm, tolerance {:.3f} mm)",
       name, caps, added, n - added, map.seamShift(rest.corners) * 1e3, tolerance_m * 1e3));
   return {};
@@ -377,7 +378,8 @@ std::string fillHoles(CgalMesh& mesh, int& holes, int& largest) {
     while (h != start);
     largest = std::max(largest, edges);
     if (edges > kMaxHoleEdges)
-      return fmt::format("a hole of {} edges is more than can be filled ({})", edges, kMaxHoleEdges);
+      return fmt::format("a hole of {} edges is more than can be filled ({})", edges,
+                         kMaxHoleEdges);
     std::vector<CgalMesh::Face_index> patch;
     pmp::triangulate_hole(mesh, start, std::back_inserter(patch));
     if (patch.empty()) return fmt::format("a hole of {} edges can't be filled", edges);
@@ -412,14 +414,28 @@ void takeOver(const CgalMesh& mesh, std::span<const Vec3> p, SurfaceMap& map) {
   }
 }
 
+/// How many pairs of triangles cross each other: told, not mended.
+std::size_t crossings(const SurfaceMap& map, std::span<const Vec3> p) {
+  CgalMesh mesh;
+  for (const Vec3& x : p) mesh.add_vertex(Point(x.x(), x.y(), x.z()));
+  using Vertex = CgalMesh::Vertex_index;
+  for (const Triangle& t : map.triangles)
+    mesh.add_face(Vertex(unsigned(t[0])), Vertex(unsigned(t[1])), Vertex(unsigned(t[2])));
+  std::vector<std::pair<CgalMesh::Face_index, CgalMesh::Face_index>> pairs;
+  pmp::self_intersections(mesh, std::back_inserter(pairs));
+  return pairs.size();
+}
+
 Result<void> repairSurface(SurfaceMap& map, const RawMesh& rest, bool isSequence,
                            const std::string& name, std::vector<std::string>& report) {
   const std::vector<Vec3> p = map.apply(rest.corners);
   std::set<std::array<double, 3>> places;
   for (const Vec3& x : p) places.insert({x.x(), x.y(), x.z()});
   if (isSequence && places.size() != p.size())
-    return usageError(rest.file, fmt::format("{}: a sequence with sheets that touch on frame 0 "
-                                             "can't be repaired", name),
+    return usageError(rest.file,
+                      fmt::format("{}: a sequence with sheets that touch on frame 0 "
+                                  "can't be repaired",
+                                  name),
                       "Close it in the modelling program, or say \"closure\": \"draw_only\".");
   std::set<Triangle> seen;
   std::vector<std::array<std::size_t, 3>> polygons;
@@ -444,9 +460,10 @@ Result<void> repairSurface(SurfaceMap& map, const RawMesh& rest, bool isSequence
   if (obstacle.empty() && !pmp::does_self_intersect(mesh)) pmp::orient_to_bound_a_volume(mesh);
   takeOver(mesh, p, map);
   compact(map);
-  report.push_back(fmt::format("{}: repaired: {} duplicate triangles removed, {} edges stitched, {} "
-                               "holes filled with {} triangles (largest {} edges), no vertex moved",
-                               name, doubles, stitched, holes, filled, largest));
+  report.push_back(
+      fmt::format("{}: repaired: {} duplicate triangles removed, {} edges stitched, {} "
+                  "holes filled with {} triangles (largest {} edges), no vertex moved",
+                  name, doubles, stitched, holes, filled, largest));
   const std::vector<Vec3> q = map.apply(rest.corners);
   if (obstacle.empty() && checkManifold(map.triangles, int(q.size())).closed()) return {};
   return usageError(rest.file,
@@ -457,25 +474,28 @@ Result<void> repairSurface(SurfaceMap& map, const RawMesh& rest, bool isSequence
 }
 }  // namespace
 
-Result<void> closeSurface(SurfaceMap& map, const RawMesh& rest, Closure closure, bool isSequence,
-                          const std::string& name, std::vector<std::string>& report) {
-  const auto closed = [&] {
-    return checkManifold(map.triangles, int(map.corner.size())).closed();
-  };
+Result<void> closeSurface(SurfaceMap& map, const RawMesh& rest, SurfaceClosure closure,
+                          bool isSequence, const std::string& name,
+                          std::vector<std::string>& report) {
+  const auto closed = [&] { return checkManifold(map.triangles, int(map.corner.size())).closed(); };
   if (!closed()) {
     const std::vector<Vec3> p = map.apply(rest.corners);
-    if (closure == Closure::requireClosed)
-      return usageError(rest.file,
-                        fmt::format("{} must be closed, but has {}", name,
-                                    badEdges(map.triangles, p)),
-                        "Close it, or say \"closure\": \"repair\" or \"draw_only\".");
-    if (closure == Closure::drawOnly) {
+    if (closure == SurfaceClosure::requireClosed)
+      return usageError(
+          rest.file, fmt::format("{} must be closed, but has {}", name, badEdges(map.triangles, p)),
+          "Close it, or say \"closure\": \"repair\" or \"draw_only\".");
+    if (closure == SurfaceClosure::drawOnly) {
       report.push_back(fmt::format("{}: draw only: {}", name, badEdges(map.triangles, p)));
       return {};
     }
     if (auto done = repairSurface(map, rest, isSequence, name, report); !done) return done;
   }
-  if (volume(map.apply(rest.corners), map.triangles) < 0) {
+  const std::vector<Vec3> p = map.apply(rest.corners);
+  if (const std::size_t pairs = closure == SurfaceClosure::drawOnly ? 0 : crossings(map, p);
+      pairs > 0)
+    report.push_back(
+        fmt::format("{}: crosses itself at {} pairs of triangles; left so", name, pairs));
+  if (volume(p, map.triangles) < 0) {
     for (Triangle& t : map.triangles) std::swap(t[1], t[2]);
     report.push_back(fmt::format("{}: faced inward; turned outward", name));
   }

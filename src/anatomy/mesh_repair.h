@@ -14,7 +14,7 @@
 namespace swallowclip::anatomy {
 
 enum class HalfSide { left, right, whole, guess };
-enum class Closure { repair, drawOnly, requireClosed };
+enum class SurfaceClosure { repair, drawOnly, requireClosed };
 
 /// What a file holds. Readers split vertices at will, so corners may repeat a position.
 struct RawMesh {
@@ -49,7 +49,7 @@ Result<void> mirrorHalf(SurfaceMap& map, const RawMesh& rest, HalfSide side, dou
 
 /// requireClosed: an open surface is an error that names its edges. repair: oriented, stitched and
 /// holes filled (CGAL), no vertex moved. drawOnly: as it is. Closed ones end up facing outward.
-Result<void> closeSurface(SurfaceMap& map, const RawMesh& rest, Closure closure,
+Result<void> closeSurface(SurfaceMap& map, const RawMesh& rest, SurfaceClosure closure,
                           bool isSequence, const std::string& name,
                           std::vector<std::string>& report);
 }  // namespace swallowclip::anatomy

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 #include <system_error>
 
 namespace swallowclip {
@@ -20,12 +20,11 @@ Result<std::string> readFile(const fs::path& path) {
   if (fs::is_directory(path, ec))
     return usageError(path.string(), "is a folder, a file was expected", "Name a file in it.");
   std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || !text)
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (in.bad() || !in.is_open())
     return failure(path.string(), fmt::format("can't be read ({})", std::strerror(errno)),
                    "Check its permissions.");
-  return std::move(text).str();
+  return text;
 }
 
 fs::path asidePath(const fs::path& p) {

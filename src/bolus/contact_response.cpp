@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "bolus/contact_response.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swallowclip::bolus {
+namespace {
+constexpr double kRestDistance = 0.4;   // spacings (DESIGN 5, measured)
+constexpr double kGapShare = 0.45;      // of the local gap (DESIGN 5, measured)
+constexpr double kFacingCosine = -0.5;  // walls within 60 degrees of opposite, assumed (-0.8 to 0)
+constexpr int kPasses = 3;              // Gauss-Seidel over the contacts, assumed (2 to 5)
+constexpr int kRescues = 4;             // times a particle outside is looked at again, assumed
+constexpr double kJustInside = 1e-3;    // spacings, assumed: small against the smallest gap
+
+double keptDistance(const std::vector<Contact>& contacts, double spacing_m) {
+  return std::min(kRestDistance * spacing_m, kGapShare * localGap_m(contacts));
+}
+}  // namespace
+
+int facingContact(const std::vector<Contact>& c) {
+  for (int k = 1; k < static_cast<int>(c.size()); ++k)
+    if (c[k].inward.dot(c[0].inward) < kFacingCosine) return k;
+  return -1;
+}
+
+double localGap_m(const std::vector<Contact>& c) {
+  const int k = facingContact(c);
+  return k < 0 ? INFINITY : c[0].distance_m + c[k].distance_m;
+}
+
+void clampVelocity(const std::vector<Contact>& contacts, double spacing_m, double dt_s, Vec3& v) {
+  if (contacts.empty()) return;
+  const double kept = keptDistance(contacts, spacing_m);
+  for (int pass = 0; pass < kPasses; ++pass)
+    for (const Contact& c : contacts) {
+      const double least = std::min(0.0, (kept - c.distance_m) / dt_s);
+      const double approach = (v - c.velocity).dot(c.inward);
+      if (approach < least) v += (least - approach) * c.inward;
+    }
+}
+
+bool projectInside(const WallField& field, double spacing_m, Vec3& x, std::vector<Contact>& out) {
+  const double reach = kContactReach * spacing_m;
+  bool wasOutside = false;
+  for (int k = 0; k < kRescues; ++k) {
+    field.contacts(x, reach, out);
+    if (out.empty() || out[0].distance_m >= 0) break;
+    wasOutside = true;
+    x = out[0].point + kJustInside * spacing_m * out[0].inward;
+  }
+  if (out.empty() || out[0].distance_m < 0) return wasOutside;
+  const double kept = keptDistance(out, spacing_m);
+  const Vec3 before = x;
+  for (int pass = 0; pass < kPasses; ++pass)
+    for (const Contact& c : out) {
+      const double d = (x - c.point).dot(c.inward);
+      if (d < kept) x += (kept - d) * c.inward;
+    }
+  if (x == before) return wasOutside;
+  field.contacts(x, reach, out);
+  if (!out.empty() && out[0].distance_m < 0) {  // a corner threw it out: stay
+    x = before;
+    field.contacts(x, reach, out);
+  }
+  return wasOutside;
+}
+}  // namespace swallowclip::bolus

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+#include "bolus/solver.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bolus/solver_impl.h"
+#include "core/digest.h"
+
+namespace swallowclip::bolus {
+namespace {
+constexpr std::array<const char*, 2> kSolverNames{"dfsph", "wcsph"};
+// 621 particles of (2 mm)^3 are called 5 mL (thesis 4.3, table 4.2): this share of the nominal.
+constexpr double kFilledShare = 621 * 8e-9 / 5e-6;
+constexpr int kMostParticles = 2'000'000;  // what this program is made for, times a hundred
+// Settling: honey-like, so that thin fluids do not slosh and yield fluids do come to rest.
+constexpr double kSettlingViscosity_Pas = 0.5;  // assumed (0.1 to 1)
+// At rest means drifting, not speed: the projections leave a flicker of about a third of what
+// gravity adds in one step (measured: mean 1-3 mm/s), which leads nowhere.
+constexpr double kDriftWindow_s = 0.05;  // assumed (0.02 to 0.1)
+constexpr double kRestDrift_ms = 5e-3;   // fastest particle over a window, assumed (2 to 10 mm/s)
+constexpr double kRestMeanDrift_ms = 1e-3;  // mean, assumed (0.5 to 2 mm/s)
+constexpr double kInfeasibleError = 0.02;   // mean compression, DESIGN 5
+constexpr double kInfeasibleFor_s = 0.02;   // DESIGN 5
+// At its cap the density solve counts as failing only when it leaves more than this, assumed
+// (0.2 to 1 %): slow convergence of thin layers is harmless.
+constexpr double kCapError = 0.005;
+}  // namespace
+
+const char* name(SolverKind kind) {
+  return kSolverNames[static_cast<int>(kind)];
+}
+
+Result<SolverKind> solverFromName(std::string_view word) {
+  for (std::size_t k = 0; k < kSolverNames.size(); ++k)
+    if (word == kSolverNames[k]) return static_cast<SolverKind>(k);
+  return usageError("solver", fmt::format("no solver is named '{}'", word), "use dfsph or wcsph");
+}
+
+int BolusDef::particleCount() const {
+  return static_cast<int>(std::lround(kFilledShare * volume_m3 / std::pow(spacing_m, 3)));
+}
+
+std::string BolusDef::validate() const {
+  if (const std::string bad = fluid.validate(); !bad.empty()) return bad;
+  if (!(spacing_m >= 2e-4 && spacing_m <= 1e-2))
+    return fmt::format("spacing_m is {}, expected 0.0002 to 0.01", spacing_m);
+  if (!(volume_m3 > 0 && volume_m3 < 1e-3))
+    return fmt::format("volume_m3 is {}, expected above 0 and below 0.001", volume_m3);
+  if (!gravity_ms2.allFinite()) return "gravity_ms2 is not finite";
+  if (const double n = kFilledShare * volume_m3 / std::pow(spacing_m, 3);
+      !(n >= 1 && n <= kMostParticles))
+    return fmt::format("volume and spacing give {:.0f} particles, expected 1 to {}", n,
+                       kMostParticles);
+  return "";
+}
+
+Solver::Solver(const BolusDef& def, const WallMotion& motion, int threads)
+    : impl_(std::make_unique<Impl>(def, motion, threads)) {}
+Solver::~Solver() = default;
+Solver::Solver(Solver&&) noexcept = default;
+
+namespace {
+Result<void> checkInputs(const BolusDef& def, const WallMotion& m,
+                         const std::vector<Vec3>& positions) {
+  if (const std::string bad = def.validate(); !bad.empty())
+    return usageError("bolus", bad, "correct the bolus definition");
+  if (def.solver != SolverKind::dfsph)
+    return usageError("solver", "wcsph is not built yet", "use dfsph");
+  const int vertices = static_cast<int>(positions.size());
+  for (const Triangle& t : m.triangles)
+    for (int v : t)
+      if (v < 0 || v >= vertices)
+        return usageError("skin", fmt::format("a triangle names vertex {} of {}", v, vertices),
+                          "give a skin whose triangles use its own vertices");
+  for (std::size_t size : {m.s_m.size(), m.branch.size(), m.wall.size()})
+    if (size != 0 && static_cast<int>(size) != vertices)
+      return usageError("skin", fmt::format("{} vertex labels for {} vertices", size, vertices),
+                        "give one label per vertex");
+  const ManifoldReport report = checkManifold(m.triangles, vertices);
+  if (!report.closed())
+    return usageError("skin", report.text(), "give a closed surface around the fluid");
+  if (volume(positions, m.triangles) <= 0)
+    return usageError("skin", "the surface encloses no volume, or faces inwards",
+                      "turn its triangles to face out of the lumen");
+  return {};
+}
+}  // namespace
+
+Result<void> Solver::seed(double t_s, const SeedRange& range) {
+  Impl& s = *impl_;
+  s.motion->at(t_s, s.wallPositions, s.wallVelocities);
+  if (auto ok = checkInputs(s.def, *s.motion, s.wallPositions); !ok) return ok;
+  auto places = seedPlaces(*s.motion, s.wallPositions, s.def.gravity_ms2, range, s.def.spacing_m,
+                           s.def.particleCount());
+  if (!places) return std::unexpected(places.error());
+  s.start(t_s, std::move(*places));
+  return {};
+}
+
+Result<void> Solver::place(double t_s, std::vector<Vec3> positions) {
+  Impl& s = *impl_;
+  s.motion->at(t_s, s.wallPositions, s.wallVelocities);
+  if (auto ok = checkInputs(s.def, *s.motion, s.wallPositions); !ok) return ok;
+  s.start(t_s, std::move(positions));
+  return {};
+}
+
+Result<RelaxReport> Solver::relax(double t_s, double longest_s) {
+  Impl& s = *impl_;
+  s.frozen = true;
+  s.settlingViscosity_Pas = kSettlingViscosity_Pas;
+  s.meetWalls(t_s);
+  RelaxReport report;
+  Result<void> ok;
+  std::vector<Vec3> before = s.particles.positions;
+  for (double window_s = 0; report.time_s < longest_s && !report.atRest;) {
+    const double dt = s.chooseStep_s(1e-3);
+    const Impl::Substep step = s.substep(dt);
+    report.time_s += dt;
+    report.meanDensityError = step.meanError;
+    window_s += dt;
+    if (window_s >= kDriftWindow_s) {
+      report.maxDrift_ms = report.meanDrift_ms = 0;
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        const double drift = (s.particles.positions[i] - before[i]).norm() / window_s;
+        report.maxDrift_ms = std::max(report.maxDrift_ms, drift);
+        report.meanDrift_ms += drift / static_cast<double>(before.size());
+      }
+      report.atRest = report.maxDrift_ms < kRestDrift_ms && report.meanDrift_ms < kRestMeanDrift_ms;
+      before = s.particles.positions;
+      window_s = 0;
+    }
+    // a lattice that starts too dense needs time to spread; only then is the room judged
+    if (report.time_s > 0.2 && !(ok = s.checkStep(step, dt))) break;
+  }
+  s.frozen = false;
+  s.settlingViscosity_Pas = 0;
+  s.infeasible_s = 0;
+  std::fill(s.particles.velocities.begin(), s.particles.velocities.end(), Vec3::Zero());
+  s.meetWalls(t_s);
+  s.finishFrame();
+  if (!ok) return std::unexpected(ok.error());
+  return report;
+}
+
+std::string Solver::Impl::wallsAt(int i) const {
+  if (motion->wall.empty() || i < 0 || contacts[i].empty()) return "walls unnamed";
+  auto label = [&](const Contact& c) {
+    return static_cast<int>(motion->wall[motion->triangles[c.triangle][0]]);
+  };
+  const int facing = facingContact(contacts[i]);
+  if (facing < 0) return fmt::format("wall {}", label(contacts[i][0]));
+  return fmt::format("walls {} and {}, {:.2f} mm apart", label(contacts[i][0]),
+                     label(contacts[i][facing]), localGap_m(contacts[i]) * 1e3);
+}
+
+Result<void> Solver::Impl::checkStep(const Substep& s, double dt_s) {
+  const int w = s.worst;
+  const std::string where =
+      w < 0 ? fmt::format("t = {:.4f} s", time_s)
+            : fmt::format("t = {:.4f} s, s = {:.1f} mm", time_s, particles.s_m[w] * 1e3);
+  if (!std::isfinite(s.meanError) || !std::isfinite(s.maxSpeed_ms))
+    return failure(where, "the bolus has a position or velocity that is not a number",
+                   "check the skin's positions and velocities at this time");
+  const bool bad =
+      s.meanError > kInfeasibleError || (s.density.atCap && s.density.meanError > kCapError);
+  infeasible_s = bad ? infeasible_s + dt_s : 0;
+  if (infeasible_s < kInfeasibleFor_s) return {};
+  return failure(where,
+                 fmt::format("a sealed pocket is smaller than the fluid in it (mean compression "
+                             "{:.1f} %, worst {:.1f} %; {})",
+                             s.meanError * 100, s.maxError * 100, wallsAt(w)),
+                 "open these walls later, close them more slowly, or hold a smaller bolus");
+}
+
+void Solver::Impl::finishFrame() {
+  updatePath(true);
+  escapedNow = 0;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (particles.state[i] == State::swallowed) continue;
+    // a wall close by tells the side; the full winding number only for those in doubt
+    const bool doubtful = contacts[i].empty()
+                              ? walls[i].nearestTriangle < 0 || walls[i].lambda > 0.5
+                              : contacts[i][0].distance_m < 0;
+    if (!doubtful) continue;
+    escapedNow += windingNumber(particles.positions[i], wallPositions, motion->triangles) < 0.5;
+  }
+  stats.escaped = std::max(stats.escaped, escapedNow);
+}
+
+Result<StepReport> Solver::advanceTo(double t_s) {
+  Impl& s = *impl_;
+  StepReport report;
+  while (s.time_s < t_s - 1e-12) {
+    const double dt = s.chooseStep_s(t_s - s.time_s);
+    const Impl::Substep step = s.substep(dt);
+    ++report.substeps;
+    report.meanDensityError = step.meanError;
+    report.maxDensityError = step.maxError;
+    Stats& all = s.stats;
+    ++all.steps;
+    all.densityIterations += step.density.iterations;
+    all.rateIterations += step.rate.iterations;
+    all.viscosityIterations += step.viscosityIterations;
+    all.clamped += step.clamped;
+    all.rescued += step.rescued;
+    all.maxSpeed_ms = std::max(all.maxSpeed_ms, step.maxSpeed_ms);
+    all.maxDensityError = std::max(all.maxDensityError, step.maxError);
+    s.errorSum += step.meanError * step.fluidCount;
+    s.errorCount += step.fluidCount;
+    s.aboveTenCount += step.aboveTenPercent;
+    if (s.errorCount > 0) {
+      all.meanDensityError = s.errorSum / s.errorCount;
+      all.shareAboveTenPercent = s.aboveTenCount / s.errorCount;
+    }
+    if (auto ok = s.checkStep(step, dt); !ok) return std::unexpected(ok.error());
+  }
+  s.finishFrame();
+  return report;
+}
+
+double Solver::time_s() const {
+  return impl_->time_s;
+}
+const Particles& Solver::particles() const {
+  return impl_->particles;
+}
+const Stats& Solver::stats() const {
+  return impl_->stats;
+}
+double Solver::particleVolume_m3() const {
+  return std::pow(impl_->def.spacing_m, 3);
+}
+
+Ledger Solver::ledger() const {
+  Ledger l;
+  l.start = static_cast<std::int32_t>(impl_->particles.state.size());
+  for (State s : impl_->particles.state) {
+    l.fluid += s == State::fluid;
+    l.film += s == State::film;
+    l.swallowed += s == State::swallowed;
+  }
+  l.escaped = impl_->escapedNow;
+  return l;
+}
+
+std::uint64_t Solver::digest() const {
+  const Particles& p = impl_->particles;
+  std::uint64_t d = stateDigest(p.positions.data(), p.positions.size() * sizeof(Vec3));
+  d = stateDigest(p.velocities.data(), p.velocities.size() * sizeof(Vec3), d);
+  return stateDigest(p.state.data(), p.state.size(), d);
+}
+}  // namespace swallowclip::bolus

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Inside of the solver: the fluid between the walls of one moment, and one substep.
+#pragma once
+#include <vector>
+
+#include "bolus/contact_response.h"
+#include "bolus/projection.h"
+#include "bolus/solver.h"
+#include "bolus/viscosity.h"
+
+namespace swallowclip::bolus {
+
+struct Solver::Impl {
+  Impl(const BolusDef& d, const WallMotion& m, int threads);
+
+  // What a substep was like.
+  struct Substep {
+    double meanError = 0, maxError = 0, maxSpeed_ms = 0;
+    int fluidCount = 0, aboveTenPercent = 0, worst = -1;
+    ProjectionReport density, rate;
+    int viscosityIterations = 0, clamped = 0, rescued = 0;
+  };
+
+  void start(double t_s, std::vector<Vec3> places);
+  /// Walls at t, particles pushed inside them, states, neighbours, wall integrals, densities.
+  int meetWalls(double t_s);
+  double chooseStep_s(double longest_s) const;
+  Substep substep(double dt_s);
+  Result<void> checkStep(const Substep& s, double dt_s);
+  void finishFrame();  ///< path coordinates of all particles, escape check
+
+  void evaluateWalls(double t_s);
+  int pushInside();
+  void updateStates();
+  void updatePath(bool all);
+  void sampleWalls();
+  int clampSpeeds(double dt_s);
+  void measure(Substep& s) const;
+  std::string wallsAt(int particle) const;
+
+  BolusDef def;
+  const WallMotion* motion;
+  mutable ThreadPool pool;
+  Kernel kernel;
+  KernelTable table;
+  WallField field;
+  double volume_m3;  // in kernel sums: a lattice at rest has density one with every kernel
+
+  Particles particles;
+  std::vector<Vec3> wallPositions, wallVelocities;
+  std::vector<std::vector<Contact>> contacts;
+  std::vector<WallSample> walls;
+  std::vector<std::uint8_t> active;  // takes part in the pressure solve
+  Neighbours neighbours;
+  Projection projection;
+  Viscosity viscosity;
+
+  double time_s = 0;
+  bool frozen = false;  // walls stand still (settling)
+  double settlingViscosity_Pas = 0;
+  double infeasible_s = 0;  // how long the pocket has been too small
+  Stats stats;
+  double errorSum = 0, errorCount = 0, aboveTenCount = 0;
+  int escapedNow = 0;
+};
+}  // namespace swallowclip::bolus

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "bolus/solver_impl.h"
+
+namespace swallowclip::bolus {
+namespace {
+constexpr int kWallChunk = 16;            // particles per work item of wall work
+constexpr double kLongestStep_s = 1e-3;   // DESIGN 5
+constexpr double kShortestStep_s = 5e-6;  // assumed: below it nothing moves any more
+constexpr double kFluidCourant = 0.4;     // spacings per step at the fastest particle, DESIGN 5
+constexpr double kWallCourant = 0.05;     // spacings per step at the fastest wall, DESIGN 5
+constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contacts reach 0.9
+constexpr double kFilmGap = 0.3;          // spacings, DESIGN 5 (0.6 invents residue)
+constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
+}  // namespace
+
+Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
+    : def(d),
+      motion(&m),
+      pool(std::max(1, threads)),
+      kernel(d.kernel, supportPerSpacing(d.kernel) * d.spacing_m),
+      table(kernel),
+      field(table, d.spacing_m),
+      volume_m3(std::pow(d.spacing_m, 3) / kernel.latticeSum(d.spacing_m)) {}
+
+void Solver::Impl::start(double t_s, std::vector<Vec3> places) {
+  const std::size_t n = places.size();
+  particles.positions = std::move(places);
+  particles.velocities.assign(n, Vec3::Zero());
+  particles.densityRatio.assign(n, 1.0);
+  particles.state.assign(n, State::fluid);
+  particles.s_m.assign(n, 0.0);
+  particles.branch.assign(n, 0);
+  contacts.assign(n, {});
+  walls.assign(n, {});
+  active.assign(n, 1);
+  projection.resize(static_cast<int>(n));
+  stats = {};
+  errorSum = errorCount = aboveTenCount = infeasible_s = 0;
+  meetWalls(t_s);
+  finishFrame();
+}
+
+void Solver::Impl::evaluateWalls(double t_s) {
+  motion->at(t_s, wallPositions, wallVelocities);
+  if (frozen) std::fill(wallVelocities.begin(), wallVelocities.end(), Vec3::Zero());
+  Vec3 low = Vec3::Constant(INFINITY), high = -low;
+  for (std::size_t i = 0; i < particles.positions.size(); ++i) {
+    if (particles.state[i] == State::swallowed) continue;
+    low = low.cwiseMin(particles.positions[i]);
+    high = high.cwiseMax(particles.positions[i]);
+  }
+  field.build(motion->triangles, wallPositions, wallVelocities, low, high);
+}
+
+int Solver::Impl::pushInside() {
+  const int n = static_cast<int>(particles.positions.size());
+  return static_cast<int>(pool.sumChunks(n, kWallChunk, [&](int begin, int end) {
+    double rescued = 0;
+    for (int i = begin; i < end; ++i)
+      if (particles.state[i] != State::swallowed)
+        rescued += projectInside(field, def.spacing_m, particles.positions[i], contacts[i]);
+    return rescued;
+  }));
+}
+
+// Film by the width of the lumen alone, never by density.
+void Solver::Impl::updateStates() {
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    State& s = particles.state[i];
+    if (s != State::swallowed)
+      s = localGap_m(contacts[i]) < kFilmGap * def.spacing_m ? State::film : State::fluid;
+    active[i] = s == State::fluid;
+  }
+}
+
+void Solver::Impl::sampleWalls() {
+  pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      walls[i] = active[i] ? field.sample(particles.positions[i]) : WallSample{};
+  });
+}
+
+// s and branch of the nearest skin triangle: from the contacts or the wall integrals where a wall
+// is within reach, else by a full search near the UES plane and at the ends of frames.
+void Solver::Impl::updatePath(bool all) {
+  const WallMotion& m = *motion;
+  if (m.s_m.empty() && m.branch.empty()) return;
+  const double nearEnd = def.swallowedAt_s_m - kNearEnd_m;
+  pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      if (particles.state[i] == State::swallowed) continue;
+      int k = contacts[i].empty() ? walls[i].nearestTriangle : contacts[i][0].triangle;
+      const Vec3& p = particles.positions[i];
+      if (k < 0 && !all && particles.s_m[i] < nearEnd) continue;
+      if (k < 0) k = nearestPoint(p, wallPositions, m.triangles).triangle;
+      const Triangle& t = m.triangles[k];
+      const Vec3 bary =
+          closestBarycentric(p, wallPositions[t[0]], wallPositions[t[1]], wallPositions[t[2]]);
+      if (!m.s_m.empty()) particles.s_m[i] = Vec3(m.s_m[t[0]], m.s_m[t[1]], m.s_m[t[2]]).dot(bary);
+      int corner = 0;
+      bary.maxCoeff(&corner);
+      if (!m.branch.empty()) particles.branch[i] = m.branch[t[corner]];
+    }
+  });
+  if (m.s_m.empty() || frozen) return;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const bool insideLumen = contacts[i].empty() || contacts[i][0].distance_m >= 0;
+    if (particles.state[i] == State::swallowed || !insideLumen) continue;
+    if (particles.s_m[i] < def.swallowedAt_s_m || particles.branch[i] != 0) continue;
+    particles.state[i] = State::swallowed;
+    particles.velocities[i].setZero();
+    particles.densityRatio[i] = 1;
+    active[i] = 0;
+    contacts[i].clear();
+  }
+}
+
+int Solver::Impl::meetWalls(double t_s) {
+  time_s = t_s;
+  evaluateWalls(t_s);
+  const int rescued = pushInside();
+  updateStates();
+  sampleWalls();
+  updatePath(false);
+  neighbours.build(particles.positions, active, kernel, pool);
+  for (std::size_t i = 0; i < active.size(); ++i)
+    particles.densityRatio[i] = active[i] ? volume_m3 * neighbours.sumW[i] + walls[i].lambda : 1.0;
+  return rescued;
+}
+
+double Solver::Impl::chooseStep_s(double longest_s) const {
+  double fastest = 0, wall = 0;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (particles.state[i] == State::swallowed) continue;
+    fastest = std::max(fastest, particles.velocities[i].norm());
+    if (active[i]) wall = std::max(wall, walls[i].normalSpeed_ms);
+  }
+  double dt = kLongestStep_s;
+  fastest += dt * def.gravity_ms2.norm();
+  dt = std::min(dt, kFluidCourant * def.spacing_m / fastest);
+  if (wall > 0) dt = std::min(dt, kWallCourant * def.spacing_m / wall);
+  dt = std::max(dt, kShortestStep_s);
+  return longest_s / std::ceil(longest_s / dt - 1e-9);  // equal steps to the end, no sliver
+}
+
+// A particle must not outrun the contacts it knows.
+int Solver::Impl::clampSpeeds(double dt_s) {
+  const double limit = kLongestMove * def.spacing_m / dt_s;
+  int clamped = 0;
+  for (Vec3& v : particles.velocities) {
+    const double speed = v.norm();
+    if (speed <= limit) continue;
+    v *= limit / speed;
+    ++clamped;
+  }
+  return clamped;
+}
+
+Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
+  Substep report;
+  std::vector<Vec3>& v = particles.velocities;
+  const Flow flow{particles.positions, active, neighbours, walls, volume_m3, pool};
+  projection.prepare(flow);
+  report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (active[i]) v[i] += dt_s * def.gravity_ms2;
+  report.viscosityIterations =
+      viscosity.apply(flow, def.fluid, settlingViscosity_Pas, dt_s, kernel.support_m(), v)
+          .iterations;
+  report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, v);
+  report.clamped = clampSpeeds(dt_s);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (particles.state[i] == State::swallowed) continue;
+    if (particles.state[i] == State::film) {  // rides on the two sheets that hold it
+      const int facing = facingContact(contacts[i]);
+      v[i] = facing < 0 ? contacts[i][0].velocity
+                        : Vec3((contacts[i][0].velocity + contacts[i][facing].velocity) / 2);
+    }
+    clampVelocity(contacts[i], def.spacing_m, dt_s, v[i]);
+    report.maxSpeed_ms = std::max(report.maxSpeed_ms, v[i].norm());
+    particles.positions[i] += dt_s * v[i];
+  }
+  report.rescued = meetWalls(time_s + (frozen ? 0 : dt_s));
+  measure(report);
+  return report;
+}
+
+void Solver::Impl::measure(Substep& s) const {
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (!active[i]) continue;
+    const double error = std::max(0.0, particles.densityRatio[i] - 1);
+    ++s.fluidCount;
+    s.meanError += error;
+    s.aboveTenPercent += error > 0.1;
+    if (error > s.maxError || s.worst < 0) {
+      s.maxError = error;
+      s.worst = static_cast<int>(i);
+    }
+  }
+  if (s.fluidCount > 0) s.meanError /= s.fluidCount;
+}
+}  // namespace swallowclip::bolus

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Implicit viscosity for every fluid, thin or thick (Weiler et al. 2018's pairwise form), with the
+// walls' no-slip friction inside the same matrix-free conjugate gradients:
+//   a_i = 10 sum nu_ij V (v_ij . x_ij) / (r^2 + eta^2) gradW_ij - 2 nu_i (friction v_i - friction
+//   v_wall)
+#pragma once
+#include <vector>
+
+#include "bolus/fluid.h"
+#include "bolus/projection.h"
+
+namespace swallowclip::bolus {
+
+class Viscosity {
+ public:
+  struct Report {
+    int iterations = 0;
+    bool atCap = false;
+  };
+  /// Viscosities of the moment from the strain rate, then one backward Euler step of `velocities`.
+  /// `viscosityOverride_Pas` > 0 replaces the fluid's law (used while settling).
+  Report apply(const Flow& flow, const Fluid& fluid, double viscosityOverride_Pas, double dt_s,
+               double support_m, std::vector<Vec3>& velocities);
+
+  const std::vector<double>& viscosity_Pas() const { return viscosity_; }
+
+ private:
+  void updateViscosity(const Flow& flow, const Fluid& fluid, const std::vector<Vec3>& velocities);
+  void assemble(const Flow& flow, double density_kgm3, double dt_s, double support_m);
+  void multiply(const Flow& flow, const std::vector<Vec3>& v, std::vector<Vec3>& out) const;
+
+  std::vector<double> viscosity_, pair_, wall_;
+  std::vector<Mat3> inverseDiagonal_;
+  std::vector<Vec3> residual_, direction_, product_, preconditioned_;
+};
+
+/// Shear rate sqrt(2 D:D) (1/s) of particle i, walls included.
+double shearRate_s(const Flow& flow, const std::vector<Vec3>& velocities, int i);
+}  // namespace swallowclip::bolus

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Semi-analytic walls on the skin's own triangles (in the spirit of Ferrand et al. 2013). With
+// n out of the fluid, r-hat from particle to surface, W and its support H, F and G of KernelTable:
+//   lambda      = share of the kernel outside = sum over triangles of int G (r-hat . n) dS
+//   grad lambda = sum int W n dS          flux = sum int W (v_wall . n) dS
+//   rho / rho0  = sum V W_ij + lambda     D/Dt = sum V (v_i - v_j).gradW + v_i.grad lambda - flux
+// The singular part of G is the solid angle (van Oosterom & Strackee 1983), exact; the rest is
+// smooth and done by quadrature. Contacts are the nearest wall points with their inward direction.
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "bolus/kernels.h"
+#include "bolus/neighbours.h"
+#include "core/tri_mesh.h"
+
+namespace swallowclip::bolus {
+
+struct WallSample {
+  double lambda = 0;                     ///< 0 far inside, 1 far outside
+  double flux_s = 0;                     ///< 1/s, positive where walls recede
+  Vec3 gradLambda = Vec3::Zero();        ///< 1/m, points out of the fluid
+  double friction = 0;                   ///< sum int W / distance dS, 1/m^2
+  Vec3 frictionVelocity = Vec3::Zero();  ///< the same, times wall velocity
+  double area = 0;                       ///< sum int W dS over facing walls, 1/m
+  double normalSpeed_ms = 0;             ///< fastest normal motion of a wall within reach
+  int nearestTriangle = -1;              ///< by centroid; -1 when no wall is within reach
+};
+
+struct Contact {
+  Vec3 point, inward, velocity;  ///< wall point, unit direction into the fluid, its velocity
+  double distance_m = 0;         ///< negative when the particle is outside
+  int triangle = -1;             ///< index in the skin
+};
+
+/// Closest point of the whole surface by brute force: slow and sure, for rare questions.
+struct NearestPoint {
+  int triangle = -1;
+  Vec3 barycentric = Vec3::Zero(), point = Vec3::Zero();
+  double distance_m = 0;
+};
+NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> positions,
+                          std::span<const Triangle> triangles);
+
+class WallField {
+ public:
+  /// 3 quadrature points per triangle at coarse spacing, 7 at fine (below 1.5 mm).
+  WallField(const KernelTable& table, double spacing_m);
+
+  /// Takes the triangles within reach of the box [low, high], cut where they are large.
+  void build(std::span<const Triangle> triangles, std::span<const Vec3> positions,
+             std::span<const Vec3> velocities, const Vec3& low, const Vec3& high);
+
+  WallSample sample(const Vec3& p) const;
+
+  /// Contacts within radius (<= H), nearest first, at most kMaxContacts of clearly different
+  /// direction. Only the first may have a negative distance, and then it is alone.
+  static constexpr int kMaxContacts = 8;
+  void contacts(const Vec3& p, double radius_m, std::vector<Contact>& out) const;
+
+  int triangleCount() const { return static_cast<int>(pieces_.size()); }
+
+ private:
+  struct Piece {
+    Vec3 a, b, c, va, vb, vc, normal, centroid;
+    double area, radius, normalSpeed;
+    int triangle;
+  };
+  void addPiece(const Piece& whole, int depth);
+  Piece makePiece(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& va, const Vec3& vb,
+                  const Vec3& vc, int triangle) const;
+  void addIntegrals(const Piece& t, const Vec3& p, WallSample& out) const;
+
+  const KernelTable* table_;
+  double spacing_m_, longestEdge_m_;
+  std::span<const Vec3> rule_;  // barycentric quadrature points
+  std::span<const double> ruleWeight_;
+  std::vector<Piece> pieces_;
+  std::vector<Vec3> centroids_, quadPoints_, quadVelocities_;
+  double largestRadius_m_ = 0;
+  PointGrid grid_;
+};
+}  // namespace swallowclip::bolus

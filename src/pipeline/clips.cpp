@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/clips.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/file.h"
+#include "pipeline/components.h"
+#include "pipeline/interrupt.h"
+#include "render/renderer.h"
+#include "video/frame_sink.h"
+#include "video/png.h"
+#include "video/vtt.h"
+
+namespace swallowclip::pipeline {
+namespace {
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct EventMark {
+  std::string name;
+  double time_s;
+};
+
+// Measured events where there are any, else what the swallow file plans; cues come from the plan.
+std::vector<EventMark> eventMarks(const frame::History& h, const scoring::Metrics& m) {
+  std::vector<EventMark> marks;
+  for (const auto& e : h.plannedEvents)
+    if (e.name == "cue" || e.name == "second cue") marks.push_back({e.name, e.time_s});
+  for (const auto& e : m.events)
+    if (e.time_s) marks.push_back({e.name, *e.time_s});
+  std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+  return marks;
+}
+
+render::CaptionText captionFor(const frame::History& h, const std::vector<EventMark>& marks) {
+  render::CaptionText c;
+  if (const Component* k = findComponent(h.meta.component); k && h.meta.score >= 0 && h.meta.score <= k->highestScore())
+    c.title = fmt::format("MBSImP component {}, score {}: {}", k->number, h.meta.score, k->scores[h.meta.score]);
+  else
+    c.title = h.meta.swallow;
+  c.subtitle = h.meta.bolus == "none" ? "no bolus" : "bolus: " + h.meta.bolus;
+  for (const EventMark& m : marks) c.events.push_back({m.name, m.time_s});
+  c.start_s = h.time_s.front();
+  c.duration_s = h.time_s.back() - h.time_s.front();
+  return c;
+}
+
+// The scored moment: tongue transport is judged at bolus passing mandible, else mid-clip.
+int posterFrame(const frame::History& h, const scoring::Metrics& m) {
+  for (const char* name : {"BPM", "t_on"})
+    if (const auto* e = m.event(name); e && e->time_s && e->frame >= 0) return std::min(e->frame, h.frames() - 1);
+  return h.frames() / 2;
+}
+}  // namespace
+
+std::string clipStem(const frame::Meta& m) {
+  if (m.component > 0 && m.score >= 0) return fmt::format("c{:02}-s{}-{}", m.component, m.score, m.bolus);
+  return fmt::format("{}-{}", m.swallow, m.bolus);
+}
+
+Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& preset,
+                            const frame::History& h, const scoring::Metrics& m,
+                            const std::filesystem::path& folder, const std::string& stem,
+                            Progress& progress) {
+  auto renderer = render::Renderer::create(o.data / "shaders", preset);
+  if (!renderer) return std::unexpected(renderer.error());
+  const std::vector<EventMark> marks = eventMarks(h, m);
+  render::CaptionText caption = captionFor(h, marks);
+  std::vector<video::Chapter> chapters;
+  for (const EventMark& e : marks) chapters.push_back({e.name, e.time_s});
+  const int poster = posterFrame(h, m);
+  ClipTimes times;
+  for (const std::string& view : o.views) {
+    progress.stage(fmt::format("{}-{}: drawing", stem, view));
+    const std::filesystem::path clip = folder / fmt::format("{}-{}.mp4", stem, view);
+    video::Mp4Def def;
+    def.path = clip;
+    def.width = preset.width;
+    def.height = preset.height;
+    def.rateNumerator = static_cast<int>(std::lround(h.meta.fps));
+    auto sink = video::makeMp4Sink(def);
+    if (!sink) return std::unexpected(sink.error());
+    std::filesystem::path posterPath = clip;
+    posterPath.replace_extension(".png");
+    for (int k = 0; k < h.frames(); ++k) {
+      if (interrupted()) return std::unexpected(interruptedError());
+      const double t0 = now_s();
+      caption.time_s = h.time_s[k];
+      auto image = renderer->draw(h, k, view, caption);
+      if (!image) return std::unexpected(image.error());
+      const double t1 = now_s();
+      if (auto pushed = (*sink)->push(*image); !pushed) return std::unexpected(pushed.error());
+      if (k == poster)
+        if (auto written = video::writePng(*image, posterPath); !written) return std::unexpected(written.error());
+      times.drawing_s += t1 - t0;
+      times.encoding_s += now_s() - t1;
+      progress.update(static_cast<double>(k + 1) / h.frames());
+    }
+    const double t2 = now_s();
+    if (auto done = (*sink)->finish(); !done) return std::unexpected(done.error());
+    times.encoding_s += now_s() - t2;
+    std::filesystem::path vtt = clip;
+    vtt.replace_extension(".vtt");
+    if (auto written = video::writeVtt(chapters, h.frames() / h.meta.fps, vtt); !written)
+      return std::unexpected(written.error());
+  }
+  return times;
+}
+}  // namespace swallowclip::pipeline

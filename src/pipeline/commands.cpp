@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include <chrono>
+
+#include "core/file.h"
+#include "frame/exporter.h"
+#include "frame/history_file.h"
+#include "pipeline/clips.h"
+#include "pipeline/components.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/pipeline.h"
+#include "pipeline/simulation.h"
+#include "scene/bolus_file.h"
+#include "scene/file_kind.h"
+#include "scene/mapping_file.h"
+#include "scene/preset_file.h"
+#include "scene/side_file.h"
+#include "scene/swallow_file.h"
+#include "scoring/measure.h"
+
+namespace swallowclip::pipeline {
+namespace {
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::filesystem::path clipFolder(const RunOptions& o, const frame::Meta& m) {
+  return m.component > 0 ? o.out / fmt::format("c{:02}", m.component) : o.out / m.swallow;
+}
+
+std::string verdict(const frame::Meta& m, const scoring::Metrics& metrics) {
+  if (!metrics.labelConfirmed) return metrics.labelReason;
+  return *metrics.labelConfirmed ? fmt::format("score {} confirmed by measurement", m.score)
+                                 : "NOT confirmed: " + metrics.labelReason;
+}
+
+Result<void> publish(const RunOptions& o, const render::RenderPreset& preset, const frame::History& h,
+                     double simulation_s, Progress& progress) {
+  auto metrics = scoring::measure(h);
+  if (!metrics) return std::unexpected(metrics.error());
+  const std::filesystem::path folder = clipFolder(o, h.meta);
+  if (auto ready = prepareFolder(folder); !ready) return ready;
+  const std::string stem = clipStem(h.meta);
+  auto times = drawClips(o, preset, h, *metrics, folder, stem, progress);
+  if (!times) return std::unexpected(times.error());
+  const auto side = folder / (stem + ".json");
+  if (auto written = writeFile(side, scene::sideFileText(h, *metrics)); !written) return written;
+  progress.note(fmt::format("{}: {}; simulation {:.1f} s, drawing {:.1f} s, encoding beside it {:.1f} s",
+                            side.string(), verdict(h.meta, *metrics), simulation_s, times->drawing_s, times->encoding_s));
+  return {};
+}
+
+std::vector<int> wantedScores(const RunOptions& o) {
+  return o.scores.empty() ? std::vector<int>{-1} : o.scores;
+}
+}  // namespace
+
+Result<void> render(const RunOptions& o, Progress& progress) {
+  auto preset = scene::loadPreset(o.presetsFolder(), o.preset);
+  if (!preset) return std::unexpected(preset.error());
+  if (auto ready = prepareFolder(o.out); !ready) return ready;
+  for (int score : wantedScores(o)) {
+    progress.stage(score >= 0 ? fmt::format("component {}, score {}: simulating", o.component, score) : "simulating");
+    const double start = now_s();
+    auto history = simulateSwallow(o, score, preset->fps, progress);
+    if (!history) return std::unexpected(history.error());
+    if (auto done = publish(o, *preset, *history, now_s() - start, progress); !done) return done;
+  }
+  return {};
+}
+
+Result<void> simulate(const RunOptions& o, Progress& progress) {
+  auto preset = scene::loadPreset(o.presetsFolder(), o.preset);
+  if (!preset) return std::unexpected(preset.error());
+  const std::vector<int> scores = wantedScores(o);
+  if (scores.size() != 1) return usageError("--score", "simulate writes one history, so it takes one score", "Run it once per score.");
+  progress.stage("simulating");
+  auto history = simulateSwallow(o, scores.front(), preset->fps, progress);
+  if (!history) return std::unexpected(history.error());
+  return frame::saveHistory(*history, o.history);
+}
+
+Result<void> measure(const RunOptions& o, Progress& progress) {
+  auto history = frame::loadHistory(o.history);
+  if (!history) return std::unexpected(history.error());
+  auto metrics = scoring::measure(*history);
+  if (!metrics) return std::unexpected(metrics.error());
+  progress.print(o.json ? scene::sideFileText(*history, *metrics) : scoring::formatTable(*metrics));
+  return {};
+}
+
+Result<void> draw(const RunOptions& o, Progress& progress) {
+  auto preset = scene::loadPreset(o.presetsFolder(), o.preset);
+  if (!preset) return std::unexpected(preset.error());
+  auto history = frame::loadHistory(o.history);
+  if (!history) return std::unexpected(history.error());
+  return publish(o, *preset, *history, 0, progress);
+}
+
+Result<void> exportHistory(const RunOptions& o, Progress& progress) {
+  auto format = frame::exportFormat(o.format);
+  if (!format) return std::unexpected(format.error());
+  auto history = frame::loadHistory(o.history);
+  if (!history) return std::unexpected(history.error());
+  auto written = frame::exportHistory(*history, *format, o.out);
+  if (!written) return std::unexpected(written.error());
+  progress.note(fmt::format("{}: {} files written", o.out.string(), *written));
+  return {};
+}
+
+Result<void> importMeshes(const RunOptions& o, Progress& progress) {
+  auto scene = scene::importScene(o.input, o.map, o.out);
+  if (!scene) return std::unexpected(scene.error());
+  for (const std::string& line : scene->report) progress.note(line);
+  progress.note(fmt::format("{}: {} structures; use it with --scene {}", o.out.string(),
+                            scene->anatomy.structures.size(), o.out.string()));
+  return {};
+}
+
+Result<void> list(const RunOptions& o, Progress& progress) {
+  std::string text;
+  if (o.topic == "components" || o.topic == "scores") {
+    for (const Component& c : components()) {
+      text += fmt::format("{:2}  {} (0-{})\n", c.number, c.title, c.highestScore());
+      if (o.topic == "scores")
+        for (int s = 0; s <= c.highestScore(); ++s) text += fmt::format("      {}  {}\n", s, c.scores[s]);
+    }
+  } else if (o.topic == "views") {
+    auto preset = scene::loadPreset(o.presetsFolder(), o.preset);
+    if (!preset) return std::unexpected(preset.error());
+    for (const auto& [name, view] : preset->views) text += fmt::format("{:10} {}\n", name, view.captionTitle);
+  } else if (o.topic == "presets") {
+    for (const std::string& name : scene::presetNames(o.presetsFolder())) text += name + "\n";
+  } else if (o.topic == "boluses") {
+    auto boluses = scene::loadBoluses(o.scenesFolder());
+    if (!boluses) return std::unexpected(boluses.error());
+    for (const auto& b : *boluses) text += fmt::format("{:14} {}\n", b.name, b.description);
+  } else {
+    std::vector<std::string> names;
+    std::error_code ec;
+    for (const auto& e : std::filesystem::directory_iterator(o.scenesFolder(), ec))
+      if (std::filesystem::exists(e.path() / "anatomy.json", ec) || std::filesystem::exists(e.path() / "scene.json", ec))
+        names.push_back(e.path().filename().string());
+    std::sort(names.begin(), names.end());
+    for (const std::string& n : names) text += n + "\n";
+  }
+  progress.print(text);
+  return {};
+}
+
+Result<void> check(const RunOptions& o, Progress& progress) {
+  // Presets and boluses are told by their keys, scene files by their name; the rest are swallows.
+  for (const std::filesystem::path& f : o.files) {
+    const std::string name = f.filename().string();
+    auto kind = scene::fileKind(f);
+    if (!kind) return std::unexpected(kind.error());
+    Result<void> ok;
+    const auto keep = [&](const auto& result) {
+      if (!result) ok = std::unexpected(result.error());
+    };
+    if (*kind != scene::FileKind::other) {
+      ok = scene::checkFile(f, *kind);
+    } else if (name == "lumen.json" || name == "soft.json" || name == "anatomy.json" || name == "scene.json") {
+      RunOptions at = o;
+      at.scene = std::filesystem::absolute(f).parent_path().string();
+      keep(loadScene(at));
+    } else {
+      keep(scene::loadSwallow(f));
+    }
+    if (!ok) return ok;
+    progress.print(f.string() + ": good\n");
+  }
+  return {};
+}
+}  // namespace swallowclip::pipeline

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// What a person asked for, checked for form by the cli room. Every field has the default of an
+// option left out; which fields matter depends on the command (src/cli/option_table.cpp).
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace swallowclip::pipeline {
+
+/// --set track.key=value: one number of the swallow file replaced.
+struct TrackSetting {
+  std::string track, key;
+  double value = 0;
+};
+
+struct RunOptions {
+  int component = 0;                   ///< 1..17; 0: none, the swallow file stands alone
+  std::vector<int> scores;             ///< intended scores, ascending; empty: none
+  std::string bolus = "thesis-honey";  ///< name, .json file, or "none"
+  std::vector<std::string> views{"oblique", "ap", "si"};
+  std::string scene = "adult";    ///< folder in scenes/, or a path
+  std::filesystem::path swallow;  ///< empty: the file of component and score
+  std::vector<TrackSetting> sets;
+  std::string preset = "training";  ///< name in render_presets/, or a .json file
+  double spacing_mm = 2;            ///< particle spacing; 2 mm = 621 particles in 5 mL
+  std::string solver = "dfsph";     ///< dfsph or wcsph
+  std::filesystem::path out = "output";
+  int jobs = 1;  ///< threads or clips at a time, >= 1; default: all processors
+
+  std::filesystem::path history;  ///< run.h5: written by simulate, read by measure, draw, export
+  std::string format = "csv";     ///< export: csv, obj or vtp
+  bool json = false;              ///< measure: JSON instead of a table
+  std::filesystem::path input;    ///< import: folder or file of meshes
+  std::filesystem::path map;      ///< import: mapping file
+  std::string topic;              ///< list: components, scores, views, presets, boluses, scenes
+  std::vector<std::filesystem::path> files;  ///< check
+
+  /// Folder that holds scenes/, render_presets/ and shaders/.
+  std::filesystem::path data;
+  /// The command line as typed, for side files and for replaying a failure.
+  std::string commandLine;
+
+  bool hasBolus() const { return bolus != "none"; }
+  std::filesystem::path scenesFolder() const { return data / "scenes"; }
+  std::filesystem::path presetsFolder() const { return data / "render_presets"; }
+  /// --scene as a folder: a name in scenes/, or a path when it holds a '/'.
+  std::filesystem::path sceneFolder() const {
+    return scene.find('/') == std::string::npos ? scenesFolder() / scene
+                                                : std::filesystem::path(scene);
+  }
+};
+}  // namespace swallowclip::pipeline

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/simulation.h"
+
+#include <cmath>
+
+#include "airway/airway_skin.h"
+#include "biomech/model.h"
+#include "bolus/solver.h"
+#include "core/digest.h"
+#include "core/file.h"
+#include "kinematics/choreography.h"
+#include "kinematics/events.h"
+#include "pipeline/interrupt.h"
+#include "scene/bolus_file.h"
+#include "scene/swallow_file.h"
+
+namespace swallowclip::pipeline {
+namespace {
+constexpr double kSequenceRate_hz = 34;  // 109 meshes over 3.18 s, thesis 3.2
+constexpr double kNasopharynxFloor_m = -0.022;  // contact level of the raised velum, this scene
+
+std::vector<Vec3f> toFloat(const std::vector<Vec3>& p) {
+  std::vector<Vec3f> f;
+  f.reserve(p.size());
+  for (const Vec3& v : p) f.push_back(v.cast<float>());
+  return f;
+}
+
+airway::SkinningDef skinningDef() {
+  using frame::Wall;
+  const auto wall = [](Wall w, const char* name) {
+    return airway::WallMasters{static_cast<std::uint8_t>(w), {name}};
+  };
+  airway::SkinningDef d;
+  d.walls = {wall(Wall::palate, "maxilla"),     wall(Wall::velum, "soft_palate"),
+             wall(Wall::posterior, "pharyngeal_wall"), wall(Wall::tongue, "tongue"),
+             wall(Wall::larynx, "larynx_mucosa"), wall(Wall::esophagus, "esophagus")};
+  d.seam_m = 0;  // the sheets of the parametric scene meet exactly
+  return d;
+}
+
+frame::Region regionOf(bolus::State state, std::uint8_t branch, double s_m, double z_m) {
+  using frame::Region;
+  if (state == bolus::State::swallowed) return Region::swallowed;
+  if (branch == 1 && z_m > kNasopharynxFloor_m) return Region::nasopharynx;
+  if (branch == 2) return Region::larynx;
+  if (s_m < 0.072) return Region::oral;  // borders: DESIGN section 2
+  if (s_m < 0.122) return Region::oropharynx;
+  if (s_m < 0.150) return Region::hypopharynx;
+  return Region::esophagus;
+}
+
+void appendBolus(const bolus::Solver& solver, frame::History& h) {
+  const bolus::Particles& p = solver.particles();
+  frame::BolusTrack& b = h.bolus;
+  b.positions.push_back(toFloat(p.positions));
+  b.velocities.push_back(toFloat(p.velocities));
+  b.densityRatio.emplace_back(p.densityRatio.begin(), p.densityRatio.end());
+  b.s_m.emplace_back(p.s_m.begin(), p.s_m.end());
+  auto& state = b.state.emplace_back();
+  auto& region = b.region.emplace_back();
+  for (std::size_t i = 0; i < p.state.size(); ++i) {
+    state.push_back(static_cast<frame::ParticleState>(p.state[i]));
+    region.push_back(regionOf(p.state[i], p.branch[i], p.s_m[i], p.positions[i].z()));
+  }
+  const bolus::Ledger l = solver.ledger();
+  h.ledger.push_back({l.start, l.fluid, l.film, l.swallowed, l.escaped});
+}
+
+void startStructures(const biomech::Model& model, frame::History& h) {
+  for (const biomech::ModelStructure& s : model.structures()) {
+    frame::StructureTrack t;
+    t.name = s.name;
+    t.material = s.material;
+    t.rigid = s.rigid;
+    t.triangles = s.rest.triangles;
+    t.rest = toFloat(s.rest.positions);
+    h.structures.push_back(std::move(t));
+  }
+}
+
+void appendStructures(const biomech::ModelState& state, frame::History& h) {
+  for (std::size_t i = 0; i < h.structures.size(); ++i) {
+    if (h.structures[i].rigid)
+      h.structures[i].poses.push_back(state.structures[i].worldFromRest);
+    else
+      h.structures[i].positions.push_back(toFloat(state.structures[i].positions));
+  }
+}
+
+Result<std::string> inputsHash(const RunOptions& o, const std::vector<std::filesystem::path>& files) {
+  std::string all = std::string(SWALLOWCLIP_VERSION) + "\n";
+  for (const auto& f : files) {
+    auto text = readFile(f);
+    if (!text) return std::unexpected(text.error());
+    all += sha256Hex(*text) + " " + f.filename().string() + "\n";
+  }
+  for (const TrackSetting& s : o.sets) all += fmt::format("{}.{}={}\n", s.track, s.key, s.value);
+  all += fmt::format("{} {} {}\n", o.bolus, o.spacing_mm, o.solver);
+  return sha256Hex(all);
+}
+
+struct Moving {
+  biomech::Model model;
+  airway::BakedSkin skin;
+  kinematics::SequenceSampler landmarks;
+  std::vector<std::string> landmarkNames;
+};
+
+Result<Moving> setInMotion(const LoadedScene& scene, const kinematics::SwallowDef& swallow, int threads) {
+  kinematics::BakedMotion baked = kinematics::bake(scene.rigid, *scene.lumen, *scene.soft, swallow, kSequenceRate_hz);
+  auto model = biomech::Model::build(baked.sequence);
+  if (!model) return std::unexpected(model.error());
+  const anatomy::SkinLayout& layout = scene.lumen->skin();
+  airway::BindSkin bind;
+  bind.mesh = {scene.lumen->skinPositions(scene.lumen->evaluate(scene.lumen->neutralPose())), layout.triangles};
+  bind.wall = layout.wall;
+  bind.s_m = layout.s_m;
+  bind.u = layout.u;
+  bind.branch = layout.branch;
+  auto skin = airway::attachSkin(std::move(bind), *model, skinningDef());
+  if (!skin) return std::unexpected(skin.error());
+  auto motion = skin->bake(*model, {.rate_hz = kSequenceRate_hz, .blend = airway::TimeBlend::convex, .threads = threads});
+  if (!motion) return std::unexpected(motion.error());
+  return Moving{std::move(*model), std::move(*motion),
+                kinematics::SequenceSampler(0, kSequenceRate_hz, std::move(baked.landmarks)),
+                std::move(baked.landmarkNames)};
+}
+
+Result<bolus::Solver> startBolus(const RunOptions& o, const bolus::Fluid& fluid,
+                                 const bolus::WallMotion& walls, int threads) {
+  bolus::BolusDef def;
+  def.fluid = fluid;
+  def.spacing_m = o.spacing_mm * kMetrePerMm;
+  auto kind = bolus::solverFromName(o.solver);
+  if (!kind) return std::unexpected(kind.error());
+  def.solver = *kind;
+  bolus::Solver solver(def, walls, threads);
+  if (auto seeded = solver.seed(0, {0, 0.066}); !seeded) return std::unexpected(seeded.error());
+  if (auto relaxed = solver.relax(0); !relaxed) return std::unexpected(relaxed.error());
+  return solver;
+}
+
+void finishMeta(const bolus::Solver& solver, frame::Meta& m) {
+  const bolus::Stats& s = solver.stats();
+  m.meanDensityError = s.meanDensityError;
+  m.maxDensityError = s.maxDensityError;
+  m.shareAboveTenPercent = s.shareAboveTenPercent;
+  m.maxSpeed_ms = s.maxSpeed_ms;
+}
+}  // namespace
+
+Result<kinematics::SwallowDef> loadSwallow(const RunOptions& o, int score, std::filesystem::path* file) {
+  std::filesystem::path path = o.swallow;
+  if (path.empty()) {
+    if (o.component == 0) return usageError("--component", "neither a component nor a swallow file is given", "Add --component 4 --score 0 or --swallow FILE.");
+    path = o.scenesFolder() / "swallows" / fmt::format("c{:02}-s{}.json", o.component, score);
+    std::error_code ec;
+    if (!std::filesystem::exists(path, ec))
+      return usageError(path.string(), fmt::format("no swallow file for component {}, score {}", o.component, score),
+                        "Component 4 is built in; for others write a swallow file and give it with --swallow.");
+  }
+  if (file) *file = path;
+  auto swallow = scene::loadSwallow(path);
+  if (!swallow) return swallow;
+  for (const TrackSetting& s : o.sets)
+    if (auto set = scene::applySet(*swallow, fmt::format("{}.{}={}", s.track, s.key, s.value)); !set)
+      return std::unexpected(set.error());
+  return swallow;
+}
+
+Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fps, Progress& progress) {
+  std::filesystem::path swallowFile;
+  auto swallow = loadSwallow(o, score, &swallowFile);
+  if (!swallow) return std::unexpected(swallow.error());
+  auto scene = loadScene(o);
+  if (!scene) return std::unexpected(scene.error());
+  for (const std::string& n : scene->notes) progress.note(n);
+  scene->files.push_back(swallowFile);
+
+  frame::History h;
+  frame::Meta& m = h.meta;
+  m.scene = o.scene;
+  m.swallow = swallow->name;
+  m.bolus = "none";
+  m.solver = o.hasBolus() ? o.solver : "none";
+  m.program = std::string("swallowclip ") + SWALLOWCLIP_VERSION;
+  m.component = swallow->component;
+  m.score = swallow->score;
+  m.fps = fps;
+  m.cues_s = swallow->cues_s;
+  m.particleSpacing_m = o.spacing_mm * kMetrePerMm;
+  bolus::Fluid fluid;
+  if (o.hasBolus()) {
+    auto file = scene::loadBolus(o.scenesFolder(), o.bolus);
+    if (!file) return std::unexpected(file.error());
+    fluid = file->fluid;
+    m.bolus = file->name;
+    m.density_kgm3 = fluid.density_kgm3;
+    m.viscosity_Pas = bolus::apparentViscosity_Pas(fluid, 50);  // at 50/s, clinical-reference 4
+    scene->files.push_back(o.bolus.ends_with(".json") ? std::filesystem::path(o.bolus) : o.scenesFolder() / "boluses.json");
+  }
+  auto hash = inputsHash(o, scene->files);
+  if (!hash) return std::unexpected(hash.error());
+  m.inputsSha256 = *hash;
+
+  auto moving = setInMotion(*scene, *swallow, o.jobs);
+  if (!moving) return std::unexpected(moving.error());
+  const bolus::WallMotion walls = moving->skin.wallMotion();
+  std::optional<bolus::Solver> solver;
+  if (o.hasBolus()) {
+    auto started = startBolus(o, fluid, walls, o.jobs);
+    if (!started) return std::unexpected(started.error());
+    solver.emplace(std::move(*started));
+    h.bolus.particleVolume_m3 = solver->particleVolume_m3();
+  }
+  startStructures(moving->model, h);
+  h.skin.triangles = walls.triangles;
+  for (std::uint8_t w : walls.wall) h.skin.wall.push_back(static_cast<frame::Wall>(w));
+  h.skin.s_m.assign(walls.s_m.begin(), walls.s_m.end());
+  h.skin.u.assign(walls.u.begin(), walls.u.end());
+  for (const std::string& name : moving->landmarkNames) h.landmarks.push_back({name, {}});
+  for (const auto& [name, time] : kinematics::plannedEvents(*swallow)) h.plannedEvents.push_back({name, time});
+
+  const int frames = static_cast<int>(std::floor(swallow->duration_s * fps + 1e-9)) + 1;
+  std::vector<Vec3> p, v;
+  for (int k = 0; k < frames; ++k) {
+    if (interrupted()) return std::unexpected(interruptedError());
+    const double t = k / fps;
+    if (solver) {
+      if (auto step = solver->advanceTo(t); !step) {
+        Error e = step.error();
+        e.remedy += fmt::format("\n  Replay: {} (stopped at frame {} of {})", o.commandLine, k, frames);
+        return std::unexpected(e);
+      }
+      appendBolus(*solver, h);
+    }
+    h.time_s.push_back(t);
+    moving->skin.at(t, p, v);
+    h.skin.positions.push_back(toFloat(p));
+    h.skin.velocities.push_back(toFloat(v));
+    appendStructures(moving->model.at(t), h);
+    moving->landmarks.at(t, p, v);
+    for (std::size_t i = 0; i < h.landmarks.size(); ++i) h.landmarks[i].positions.push_back(p[i].cast<float>());
+    progress.update(static_cast<double>(k + 1) / frames);
+  }
+  if (solver) finishMeta(*solver, m);
+  return h;
+}
+}  // namespace swallowclip::pipeline

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "render/gl.h"
+
+#include <vector>
+
+#include "core/file.h"
+
+namespace swallowclip::render {
+namespace {
+
+template <class GetLength, class GetText>
+std::string infoLog(GLuint id, GetLength length, GetText text) {
+  GLint n = 0;
+  length(id, GL_INFO_LOG_LENGTH, &n);
+  std::string log(n > 0 ? n : 1, ' ');
+  text(id, static_cast<GLsizei>(log.size()), nullptr, log.data());
+  while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) log.pop_back();
+  return log;
+}
+
+Result<GLuint> compile(const std::filesystem::path& file, GLenum stage) {
+  const auto source = readFile(file);
+  if (!source) return std::unexpected(source.error());
+  const GLuint id = glCreateShader(stage);
+  const char* text = source->c_str();
+  glShaderSource(id, 1, &text, nullptr);
+  glCompileShader(id);
+  GLint ok = 0;
+  glGetShaderiv(id, GL_COMPILE_STATUS, &ok);
+  if (ok) return id;
+  const std::string log = infoLog(id, glGetShaderiv, glGetShaderInfoLog);
+  glDeleteShader(id);
+  return usageError(file.string(), "the shader does not compile: " + log,
+                    "Mend the line named, or restore the file.");
+}
+}  // namespace
+
+Result<Program> Program::load(const std::filesystem::path& dir, const std::string& vertex,
+                              const std::string& fragment) {
+  const auto v = compile(dir / vertex, GL_VERTEX_SHADER);
+  if (!v) return std::unexpected(v.error());
+  const auto f = compile(dir / fragment, GL_FRAGMENT_SHADER);
+  if (!f) {
+    glDeleteShader(*v);
+    return std::unexpected(f.error());
+  }
+  Program p;
+  p.id_ = glCreateProgram();
+  glAttachShader(p.id_, *v);
+  glAttachShader(p.id_, *f);
+  glLinkProgram(p.id_);
+  glDeleteShader(*v);
+  glDeleteShader(*f);
+  GLint ok = 0;
+  glGetProgramiv(p.id_, GL_LINK_STATUS, &ok);
+  if (!ok)
+    return usageError((dir / vertex).string() + " + " + fragment,
+                      "the stages do not link: " +
+                          infoLog(p.id_, glGetProgramiv, glGetProgramInfoLog),
+                      "Make outputs of the first agree with inputs of the second.");
+  return p;
+}
+
+Program::~Program() {
+  if (id_) glDeleteProgram(id_);
+}
+
+int Program::at(const char* name) {
+  if (auto it = locations_.find(name); it != locations_.end()) return it->second;
+  return locations_[name] = glGetUniformLocation(id_, name);
+}
+
+void Texture::create(GLenum format, int width, int height, int samples, GLenum filter) {
+  reset();
+  glGenTextures(1, &id_);
+  if (samples > 1) {
+    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, id_);
+    glTexStorage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples, format, width, height, GL_TRUE);
+    return;
+  }
+  glBindTexture(GL_TEXTURE_2D, id_);
+  glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+void Texture::bind(int unit) const {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, id_);
+}
+
+Target::~Target() {
+  if (id_) glDeleteFramebuffers(1, &id_);
+}
+
+Result<void> Target::create(const char* what, int width, int height, int samples,
+                            GLenum colourFormat, GLenum depthFormat) {
+  width_ = width;
+  height_ = height;
+  glGenFramebuffers(1, &id_);
+  glBindFramebuffer(GL_FRAMEBUFFER, id_);
+  if (colourFormat) {
+    const bool exact = colourFormat == GL_R32F;
+    colour_.create(colourFormat, width, height, samples, exact ? GL_NEAREST : GL_LINEAR);
+    glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, colour_.id(), 0);
+  } else {
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+  }
+  if (depthFormat) {
+    depth_.create(depthFormat, width, height, samples, GL_NEAREST);
+    const bool stencil =
+        depthFormat == GL_DEPTH24_STENCIL8 || depthFormat == GL_DEPTH32F_STENCIL8;
+    glFramebufferTexture(GL_FRAMEBUFFER,
+                         stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth_.id(),
+                         0);
+  }
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    return failure(what, fmt::format("no framebuffer of {} x {} with {} samples", width, height,
+                                     samples),
+                   "Choose a smaller size or fewer samples in the preset.");
+  return {};
+}
+
+void Target::resolveTo(const Target& to, GLbitfield what) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, id_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.id_);
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, to.width_, to.height_, what, GL_NEAREST);
+}
+
+void Target::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, id_);
+  glViewport(0, 0, width_, height_);
+}
+}  // namespace swallowclip::render

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// How pictures look: size, palette, lights, cameras and cutaways as plain structs. Looks only,
+// never physics. Metres and radians here; the JSON files in render_presets/ carry mm and deg in
+// their keys and are read by the scene room. Frame: x patient left, y posterior, z superior.
+// All looks (colours, light, sizes) are own design choices: assumed, tuned by eye.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace swallowclip::render {
+
+/// sRGB, components 0..1 (files may write "#rrggbb").
+using Colour = Vec3f;
+
+/// Surface look. Dimensionless, 0..1 unless said otherwise.
+struct Material {
+  Colour baseColour_srgb{0.78f, 0.72f, 0.68f};
+  Colour sectionColour_srgb{0.62f, 0.55f, 0.52f};  ///< colour of the capped cut
+  float roughness = 0.5f;      ///< GGX, perceptual (alpha = roughness^2), 0.05..1
+  float specular = 0.5f;       ///< 0.5 = normal reflectance 0.04 (refractive index 1.5)
+  float translucency = 0.0f;   ///< light wrapping past the terminator, tinted by the base colour
+  float wetness = 0.0f;        ///< strength of the thin glossy water coat
+  float mottle = 0.0f;         ///< contrast of fine tissue-fixed colour variation
+  float opacity = 1.0f;        ///< below 1 drawn as ghost in every view
+  float attenuation_per_m = 20.0f;  ///< fluoro only: linear X-ray attenuation
+};
+
+/// Directional light; direction points from the scene to the light, in view axes
+/// (x right, y up, z towards the viewer), so that every view is lit alike.
+struct DirectionalLight {
+  Vec3f direction{-0.45f, 0.75f, 0.75f};
+  Colour colour_srgb{1.0f, 0.97f, 0.92f};
+  float intensity = 1.55f;     ///< diffuse white facing it becomes this bright (linear)
+};
+
+struct LightDef {
+  DirectionalLight key;
+  DirectionalLight fill{{0.8f, 0.1f, 0.6f}, {0.82f, 0.90f, 1.0f}, 0.45f};
+  Colour ambientTop_srgb{0.80f, 0.84f, 0.90f};
+  Colour ambientBottom_srgb{0.55f, 0.45f, 0.42f};
+  float ambientIntensity = 0.45f;
+  bool shadow = true;
+  int shadowMap_px = 1024;
+  float shadowSoftness_m = 1.5e-3f;  ///< radius of the filter on the shadow map
+  float shadowStrength = 0.75f;      ///< 0 none .. 1 key light fully blocked
+};
+
+struct AoDef {
+  float strength = 0.85f;      ///< 0 switches the pass off
+  float radius_m = 8e-3f;
+  int taps = 16;               ///< 4..32
+};
+
+struct BackgroundDef {
+  Colour top_srgb{0.16f, 0.19f, 0.24f};
+  Colour bottom_srgb{0.05f, 0.06f, 0.08f};
+};
+
+struct CaptionDef {
+  bool on = true;
+  std::string font = "DejaVu Sans";
+  float size_px = 22.0f;       ///< title; the other lines are 0.72 of it
+  Colour colour_srgb{0.96f, 0.96f, 0.94f};
+  bool timeBar = true;
+  std::string credit = "Training illustration, not for diagnosis";
+};
+
+/// Removes every point with normal . p > offset from the structures it applies to.
+struct ClipRule {
+  Vec3 normal{1, 0, 0};
+  double offset_m = 0;
+  std::vector<std::string> only{};    ///< structures cut; empty = all
+  std::vector<std::string> except{};  ///< structures left whole
+  bool cap = true;                  ///< fill the cut with the section colour
+};
+
+enum class Projection { perspective, orthographic };
+enum class Style { surface, fluoro };
+
+/// One fixed camera with its cutaway, framing its subject over the whole clip.
+struct ViewDef {
+  std::string captionTitle;
+  Style style = Style::surface;
+  Projection projection = Projection::perspective;
+  Vec3 eye_m{0.25, -0.25, 0.1}, target_m{0, 0, -0.05}, up{0, 0, 1};
+  double fovY_rad = 0.5;            ///< perspective: full vertical angle
+  double orthoHeight_m = 0.16;      ///< orthographic: metres over the picture's height
+  std::vector<ClipRule> cuts;       ///< at most 3 may apply to one structure
+  std::vector<std::string> hidden;  ///< structures not drawn
+  std::map<std::string, float> ghosted;  ///< structure -> opacity 0..1
+};
+
+/// Simulated videofluoroscopy (Beer-Lambert), style fluoro.
+struct FluoroDef {
+  float softTissue_per_m = 20.0f;  ///< water at 60-70 keV, NIST XCOM (Berger 2010): 0.20 /cm
+  float bodyThickness_m = 0.10f;   ///< unmodelled tissue around, assumed 0.08..0.14
+  float exposure = 1.0f;           ///< display gain
+  float noise = 0.02f;             ///< relative, of unattenuated signal
+  float blur_px = 1.2f;            ///< detector blur at 720 lines
+  bool boneDark = true;            ///< absorbers dark, as on a fluoroscopy screen
+};
+
+struct RenderPreset {
+  std::string name = "training";
+  int width = 1280, height = 720;  ///< even (4:2:0 video)
+  double fps = 30;                 ///< >= 30: pulse rate changes scores (Bonilha 2013)
+  int msaa = 4;                    ///< samples: 1, 2 or 4
+  float exposure = 1.0f;
+  bool toneMap = true;             ///< soft highlight shoulder; false = clamp
+  float sectionOutline_m = 0.35e-3f;  ///< width of the line around caps, 0 = none
+  float sectionOutlineDarkness = 0.55f;
+  float creaseAngle_rad = 0.87f;   ///< edges sharper than this keep a hard shade
+
+  std::map<std::string, Material> materials;   ///< by material name (muscle, bone, ...)
+  std::map<std::string, Material> structures;  ///< by structure name; goes before `materials`
+  Material fallback;                           ///< for unknown materials
+  Material bolus;
+  std::vector<std::string> sectionPriority;    ///< who wins where sections overlap, first wins
+
+  LightDef light;
+  AoDef ao;
+  BackgroundDef background;
+  CaptionDef caption;
+  FluoroDef fluoro;
+  std::map<std::string, ViewDef> views;
+
+  /// The look of a structure: by name, else by material, else the fallback.
+  const Material& materialFor(const std::string& structure, const std::string& material) const;
+  /// "" when usable, else what is wrong (odd size, fps < 30, zero direction ...).
+  std::string validate() const;
+};
+}  // namespace swallowclip::render

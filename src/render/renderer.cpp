@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "render/renderer.h"
+
+#include <algorithm>
+
+#include "render/context.h"
+#include "render/draw_list.h"
+#include "render/fluoro_pass.h"
+#include "render/surface_pass.h"
+
+namespace swallowclip::render {
+
+struct Renderer::Impl {
+  std::unique_ptr<Context> context;  // first: outlives everything made in it
+  RenderPreset preset;
+  SurfacePass surface;
+  FluoroPass fluoro;
+  Prepared prepared;
+};
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() {
+  if (impl_) (void)impl_->context->makeCurrent();  // GL objects are deleted in their own context
+}
+const RenderPreset& Renderer::preset() const { return impl_->preset; }
+std::string Renderer::description() const { return impl_->context->description(); }
+
+Result<Renderer> Renderer::create(const std::filesystem::path& shaderDir, RenderPreset preset) {
+  if (auto wrong = preset.validate(); !wrong.empty())
+    return usageError("render preset '" + preset.name + "'", wrong, "Mend the preset.");
+  auto impl = std::make_unique<Impl>();
+  auto context = createOsmesaContext();
+  if (!context) return std::unexpected(context.error());
+  impl->context = std::move(*context);
+  impl->preset = std::move(preset);
+  if (auto ok = impl->surface.create(shaderDir, impl->preset); !ok)
+    return std::unexpected(ok.error());
+  if (auto ok = impl->fluoro.create(shaderDir, impl->preset); !ok)
+    return std::unexpected(ok.error());
+  return Renderer(std::move(impl));
+}
+
+namespace {
+// The history comes from a file: what is indexed below is checked here.
+std::string unusable(const frame::History& h, int frame) {
+  const auto f = static_cast<std::size_t>(frame);
+  for (const frame::StructureTrack& s : h.structures) {
+    if (s.rigid ? f >= s.poses.size() : f >= s.positions.size())
+      return fmt::format("structure '{}' has no frame {}", s.name, frame);
+    const std::size_t n = s.rigid ? s.rest.size() : s.positions[f].size();
+    if (!s.rigid && n != s.positions[0].size())
+      return fmt::format("structure '{}' changes its vertex count at frame {}", s.name, frame);
+    for (const Triangle& t : s.triangles)
+      for (int v : t)
+        if (v < 0 || static_cast<std::size_t>(v) >= n)
+          return fmt::format("structure '{}' names vertex {} of {}", s.name, v, n);
+  }
+  const auto& b = h.bolus;
+  if (!b.positions.empty() &&
+      (f >= b.positions.size() ||
+       (!b.state.empty() && (f >= b.state.size() || b.state[f].size() != b.positions[f].size()))))
+    return fmt::format("the bolus has no complete frame {}", frame);
+  if (!h.skin.positions.empty() && f >= h.skin.positions.size())
+    return fmt::format("the skin has no frame {}", frame);
+  return "";
+}
+}  // namespace
+
+Result<Image> Renderer::draw(const frame::History& history, int frame, const std::string& view,
+                             const CaptionText& caption) {
+  const RenderPreset& preset = impl_->preset;
+  const auto found = preset.views.find(view);
+  if (found == preset.views.end()) {
+    std::vector<std::string> names;
+    for (const auto& [name, def] : preset.views) names.push_back(name);
+    const std::string near = nearestName(view, names);
+    return usageError("view '" + view + "'", "not in the preset '" + preset.name + "'",
+                      near.empty() ? fmt::format("Choose one of: {}.", fmt::join(names, ", "))
+                                   : "Did you mean '" + near + "'?");
+  }
+  if (frame < 0 || frame >= history.frames())
+    return usageError(fmt::format("frame {}", frame),
+                      fmt::format("the history has frames 0..{}", history.frames() - 1),
+                      "Choose one of them.");
+  if (auto wrong = unusable(history, frame); !wrong.empty())
+    return failure("history", wrong, "Simulate again.");
+  if (auto ok = impl_->context->makeCurrent(); !ok) return std::unexpected(ok.error());
+  if (impl_->prepared.meshes.empty() || impl_->prepared.digest != topologyDigest(history))
+    impl_->prepared = prepare(history, preset.creaseAngle_rad);
+  DrawList list = buildDrawList(history, frame, impl_->prepared, preset, found->second);
+  const Camera camera = makeCamera(found->second, preset.width, preset.height, list.bounds);
+  auto image = found->second.style == Style::fluoro
+                   ? impl_->fluoro.draw(list, camera, preset, frame)
+                   : impl_->surface.draw(list, camera, preset);
+  if (!image) return image;
+  CaptionText words = caption;
+  if (words.viewLabel.empty()) words.viewLabel = found->second.captionTitle;
+  if (auto ok = drawCaptions(*image, preset.caption, words); !ok)
+    return std::unexpected(ok.error());
+  return image;
+}
+}  // namespace swallowclip::render

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Pictures of a finished swallow: history + frame + view -> 8-bit sRGB image with captions.
+// The same inputs give the same bytes on the same machine and packages. A Renderer owns one GL
+// context and belongs to one thread; several may exist.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/error.h"
+#include "core/image.h"
+#include "frame/history.h"
+#include "render/captions.h"
+#include "render/render_preset.h"
+
+namespace swallowclip::render {
+
+class Renderer {
+ public:
+  /// `shaderDir` is the repository's shaders/ folder.
+  static Result<Renderer> create(const std::filesystem::path& shaderDir, RenderPreset preset);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// `view` is a key of preset.views; an unknown one is a usage error with the nearest name.
+  Result<Image> draw(const frame::History& history, int frame, const std::string& view,
+                     const CaptionText& caption);
+
+  const RenderPreset& preset() const;
+  std::string description() const;  ///< driver and version
+
+ private:
+  struct Impl;
+  explicit Renderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+}  // namespace swallowclip::render

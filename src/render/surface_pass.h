@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// GL passes of the illustrated views: shadow map, solids with capped sections, ghosts, ambient
+// occlusion, composite. See the header comments in shaders/ for every uniform.
+#pragma once
+#include <filesystem>
+
+#include "core/image.h"
+#include "render/draw_list.h"
+#include "render/gl.h"
+
+namespace swallowclip::render {
+
+/// Vertex and index buffers filled anew for each frame.
+class GpuMesh {
+ public:
+  GpuMesh() = default;
+  ~GpuMesh();
+  GpuMesh(const GpuMesh&) = delete;
+  GpuMesh& operator=(const GpuMesh&) = delete;
+  void create();
+  void upload(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
+  void draw(const Range& range) const;
+
+ private:
+  GLuint array_ = 0, vertices_ = 0, indices_ = 0;
+};
+
+/// Reads the bound framebuffer, top row first.
+Image readPicture(int width, int height);
+
+class SurfacePass {
+ public:
+  Result<void> create(const std::filesystem::path& shaderDir, const RenderPreset& preset);
+  Result<Image> draw(DrawList& list, const Camera& camera, const RenderPreset& preset);
+
+ private:
+  void drawShadowMap(const DrawList& list, const Camera& camera, const RenderPreset& preset);
+  void setLights(const Camera& camera, const RenderPreset& preset);
+  void setMaterial(const Material& m, bool section, float opacity);
+  void drawSolids(const DrawList& list, const Camera& camera, const RenderPreset& preset);
+  void drawCaps(const DrawItem& item, const Camera& camera);
+  void drawOutlines(const DrawItem& item, const Camera& camera, const RenderPreset& preset);
+  void drawGhosts(const DrawList& list, const Camera& camera, const RenderPreset& preset);
+  void drawOcclusion(const Camera& camera, const RenderPreset& preset);
+  void composite(const Camera& camera, const RenderPreset& preset);
+  void setSpiral(int taps);
+  Range quadFor(const CutPlane& plane) const;
+  void addQuads(DrawList& list);
+
+  Program solid_, depthOnly_, ao_, blur_, composite_;
+  Target scene_, resolved_, shadow_, aoRaw_, aoSmooth_, picture_;
+  GpuMesh mesh_;
+  Mat4f shadowFromWorld_ = Mat4f::Identity();
+  float shadowRadius_m_ = 1;
+  std::vector<std::pair<CutPlane, Range>> quads_;
+  GLuint emptyArray_ = 0;
+
+ public:
+  SurfacePass() = default;
+  ~SurfacePass();
+  SurfacePass(const SurfacePass&) = delete;
+  SurfacePass& operator=(const SurfacePass&) = delete;
+};
+}  // namespace swallowclip::render

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "scene/bolus_file.h"
+
+#include "scene/json_reader.h"
+
+namespace swallowclip::scene {
+namespace {
+// Ranges are what a person can swallow, with room: air-foamed cream to dense barium, water to
+// paste.
+constexpr double kMinDensity_kgm3 = 500, kMaxDensity_kgm3 = 3000;
+constexpr double kMinViscosity_Pas = 1e-4, kMaxViscosity_Pas = 1000;
+constexpr double kMaxConsistency_Pasn = 1e4;  // thick puree: some 100 Pa.s^n
+
+/// Names become parts of file names.
+bool isFileWord(const std::string& word) {
+  constexpr std::size_t kLongest = 40;
+  return !word.empty() && word.size() <= kLongest &&
+         word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos &&
+         word != "none";
+}
+
+/// Newtonian, Carreau, power law and Herschel-Bulkley each take their own numbers and no others.
+bolus::Fluid readFluid(const JsonNode& node) {
+  using bolus::RheologyModel;
+  bolus::Fluid fluid;
+  fluid.density_kgm3 = node.number("density_kgm3", kMinDensity_kgm3, kMaxDensity_kgm3);
+  const std::string word =
+      node.choice("rheology", {"newtonian", "power-law", "carreau", "herschel-bulkley"});
+  fluid.model = bolus::rheologyFromName(word).value_or(RheologyModel::newtonian);
+  constexpr double kLowestIndex = 0.05, kHighestIndex = 2;
+  switch (fluid.model) {
+    case RheologyModel::newtonian:
+      fluid.viscosity_Pas = node.number("viscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas);
+      break;
+    case RheologyModel::herschelBulkley:
+      fluid.yield_Pa = node.number("yield_Pa", 0, 1000);
+      [[fallthrough]];
+    case RheologyModel::powerLaw:
+      fluid.consistency_Pasn = node.number("consistency_Pasn", 1e-5, kMaxConsistency_Pasn);
+      fluid.index = node.number("index", kLowestIndex, kHighestIndex);
+      break;
+    case RheologyModel::carreau:
+      fluid.eta0_Pas = node.number("eta0_Pas", kMinViscosity_Pas, kMaxViscosity_Pas);
+      fluid.etaInf_Pas =
+          node.number("etaInf_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.etaInf_Pas);
+      fluid.lambda_s = node.number("lambda_s", 1e-6, 1e4, fluid.lambda_s);
+      fluid.index = node.number("index", kLowestIndex, kHighestIndex);
+      break;
+  }
+  fluid.minViscosity_Pas =
+      node.number("minViscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.minViscosity_Pas);
+  fluid.maxViscosity_Pas =
+      node.number("maxViscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.maxViscosity_Pas);
+  if (const std::string problem = fluid.validate(); !problem.empty())
+    node.fail(problem, "Correct the numbers of this bolus.");
+  return fluid;
+}
+
+BolusDef readBolus(const JsonNode& node, std::string name) {
+  BolusDef def{std::move(name), node.text("description", ""), readFluid(node)};
+  if (node.exists() && !isFileWord(def.name))
+    node.fail("a bolus name has 1 to 40 lower-case letters, digits or '-', and is not \"none\"",
+              "Rename it; it becomes part of file names.");
+  return def;
+}
+
+}  // namespace
+
+Result<BolusDef> loadBolusFile(const std::filesystem::path& path) {
+  auto file = JsonFile::load(path);
+  if (!file) return std::unexpected(file.error());
+  BolusDef def = readBolus(file->root(), file->root().text("name"));
+  if (auto done = file->finish(); !done) return std::unexpected(done.error());
+  return def;
+}
+
+Result<std::vector<BolusDef>> loadBolusList(const std::filesystem::path& path) {
+  auto file = JsonFile::load(path);
+  if (!file) return std::unexpected(file.error());
+  std::vector<BolusDef> boluses;
+  for (const auto& [name, node] : file->root().object("boluses").members())
+    boluses.push_back(readBolus(node, name));
+  if (auto done = file->finish(); !done) return std::unexpected(done.error());
+  return boluses;
+}
+
+Result<std::vector<BolusDef>> loadBoluses(const std::filesystem::path& scenesFolder) {
+  return loadBolusList(scenesFolder / "boluses.json");
+}
+
+Result<BolusDef> loadBolus(const std::filesystem::path& scenesFolder,
+                           const std::string& nameOrFile) {
+  if (nameOrFile.ends_with(".json")) return loadBolusFile(nameOrFile);
+  auto boluses = loadBoluses(scenesFolder);
+  if (!boluses) return std::unexpected(boluses.error());
+  std::vector<std::string> names;
+  for (BolusDef& def : *boluses) {
+    if (def.name == nameOrFile) return std::move(def);
+    names.push_back(def.name);
+  }
+  const std::string near = nearestName(nameOrFile, names);
+  return usageError("--bolus", fmt::format("unknown bolus \"{}\"", nameOrFile),
+                    near.empty()
+                        ? fmt::format("Known: {}, none; or a .json file.", fmt::join(names, ", "))
+                        : fmt::format("Did you mean \"{}\"?", near));
+}
+}  // namespace swallowclip::scene

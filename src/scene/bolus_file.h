@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Boluses by name: scenes/boluses.json holds {"boluses": {"NAME": {...}}}; a file of one's own
+// holds one such object with a "name" beside its numbers.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bolus/fluid.h"
+#include "core/error.h"
+
+namespace swallowclip::scene {
+
+struct BolusDef {
+  std::string name;         ///< as in file names: lower-case letters, digits, '-'
+  std::string description;  ///< for captions and lists
+  bolus::Fluid fluid;
+};
+
+/// All boluses of scenes/boluses.json, in file order.
+Result<std::vector<BolusDef>> loadBoluses(const std::filesystem::path& scenesFolder);
+
+/// A name from scenes/boluses.json, or (if it ends in ".json") the path of a bolus file.
+Result<BolusDef> loadBolus(const std::filesystem::path& scenesFolder,
+                           const std::string& nameOrFile);
+
+/// By path, whatever the files are called.
+Result<std::vector<BolusDef>> loadBolusList(const std::filesystem::path& path);
+Result<BolusDef> loadBolusFile(const std::filesystem::path& path);
+}  // namespace swallowclip::scene

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "scene/file_kind.h"
+
+#include "scene/bolus_file.h"
+#include "scene/json_reader.h"
+#include "scene/preset_file.h"
+
+namespace swallowclip::scene {
+
+Result<FileKind> fileKind(const std::filesystem::path& path) {
+  const auto file = JsonFile::load(path);
+  if (!file) return std::unexpected(file.error());
+  const JsonNode root = file->root();
+  if (!root.isObject()) return FileKind::other;
+  if (root.has("boluses")) return FileKind::bolusList;
+  if (root.has("rheology")) return FileKind::bolus;
+  if (root.has("views")) return FileKind::preset;
+  return FileKind::other;
+}
+
+Result<void> checkFile(const std::filesystem::path& path, FileKind kind) {
+  const auto outcome = [](const auto& loaded) -> Result<void> {
+    if (!loaded) return std::unexpected(loaded.error());
+    return {};
+  };
+  switch (kind) {
+    case FileKind::preset:
+      return outcome(loadPresetFile(path));
+    case FileKind::bolusList:
+      return outcome(loadBolusList(path));
+    case FileKind::bolus:
+      return outcome(loadBolusFile(path));
+    case FileKind::other:
+      break;
+  }
+  return {};
+}
+}  // namespace swallowclip::scene

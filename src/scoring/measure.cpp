@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "scoring/measure.h"
+
+#include <array>
+#include <cmath>
+
+#include "scoring/clearance.h"
+#include "scoring/component4.h"
+#include "scoring/conservation.h"
+#include "scoring/events.h"
+
+namespace swallowclip::scoring {
+namespace {
+
+using frame::History;
+
+/// Why a component has no score yet: what the history lacks, or that nobody has built its rule.
+constexpr std::array<const char*, kComponents + 1> kNotJudged{
+    "",
+    "lip closure: the history has no lips or chin",
+    "tongue control: the history does not tell lateral sulci and floor of mouth from the rest of "
+    "the mouth",
+    "mastication: the history holds a fluid bolus, no solid",
+    "",
+    "oral residue: the history has no wall-coating thickness by oral location",
+    "initiation: rule not built in",
+    "soft palate: rule not built in",
+    "laryngeal elevation: rule not built in",
+    "hyoid excursion: rule not built in",
+    "epiglottic movement: rule not built in",
+    "vestibular closure: rule not built in",
+    "stripping wave: rule not built in",
+    "pharyngeal contraction: rule not built in",
+    "UES opening: rule not built in (needs a score-0 swallow's open time to compare with)",
+    "tongue base retraction: rule not built in",
+    "pharyngeal residue: the history does not tell valleculae and pyriform sinuses apart",
+    "esophageal clearance: the history ends at the UES (s = 180 mm)"};
+
+std::string arrayProblem(const History& h) {
+  const std::size_t n = h.time_s.size();
+  if (n < 2) return fmt::format("{} frames; at least 2 are needed", n);
+  for (std::size_t f = 0; f < n; ++f)
+    if (!std::isfinite(h.time_s[f]) || (f > 0 && !(h.time_s[f] > h.time_s[f - 1])))
+      return fmt::format("time does not rise at frame {}", f);
+  if (!(h.meta.fps > 0)) return fmt::format("{} frames per second", h.meta.fps);
+  if (h.skin.positions.size() != n)
+    return fmt::format("{} skin frames for {} times", h.skin.positions.size(), n);
+  for (const auto& s : h.structures) {
+    if ((s.rigid ? s.poses.size() : s.positions.size()) != n)
+      return fmt::format("structure {} does not have {} frames", s.name, n);
+    for (const auto& p : s.positions)
+      if (!s.rigid && p.size() != s.rest.size())
+        return fmt::format("structure {} changes its vertex count", s.name);
+  }
+  const auto& b = h.bolus;
+  if (b.s_m.empty()) return "";
+  if (b.s_m.size() != n || b.state.size() != n || b.region.size() != n)
+    return "bolus arrays do not have as many frames as there are times";
+  for (std::size_t f = 0; f < n; ++f)
+    if (b.s_m[f].size() != b.s_m[0].size() || b.state[f].size() != b.s_m[0].size() ||
+        b.region[f].size() != b.s_m[0].size())
+      return fmt::format("the particle count changes at frame {}", f);
+  return "";
+}
+
+void judgeLabel(Metrics& m) {
+  const auto score = m.scores.find(m.component);
+  if (score == m.scores.end() || m.score < 0) {
+    m.labelReason = "no score was intended";
+  } else if (!score->second) {
+    m.labelReason = m.reasons[m.component];
+  } else if (*score->second != m.score) {
+    m.labelConfirmed = false;
+    m.labelReason = fmt::format("meant to show {}-{}, measured {} ({})", m.component, m.score,
+                                *score->second, m.reasons[m.component]);
+  } else {
+    m.labelConfirmed = !m.ambiguous[m.component];
+    m.labelReason = m.ambiguous[m.component] ? "as intended, but too near a cut" : "as intended";
+  }
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T> from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+}  // namespace
+
+Result<Metrics> measure(const History& history, const ScoringRules& rules) {
+  if (const std::string problem = arrayProblem(history); !problem.empty())
+    return failure("history", problem, "simulate again");
+  auto lumen = midlineGaps(history.skin);
+  if (!lumen) return std::unexpected(lumen.error());
+
+  Metrics m;
+  m.component = history.meta.component, m.score = history.meta.score;
+  for (int c = 1; c <= kComponents; ++c) m.scores[c] = std::nullopt, m.reasons[c] = kNotJudged[c];
+
+  const MeasuredEvent bpm = measureBpm(history, rules);
+  Component4Report four = measureComponent4(history, *lumen, bpm, rules);
+  m.scores[4] = four.decision.score;
+  m.reasons[4] = four.decision.reason;
+  if (four.decision.score) m.ambiguous[4] = four.decision.ambiguous;
+
+  EventReport events = measureEvents(history, *lumen, four.onset, bpm, rules);
+  m.events = std::move(events.events);
+  append(m.quantities, std::move(four.quantities));
+  append(m.quantities, std::move(events.quantities));
+  append(m.quantities, measureClearance(history, rules));
+  append(m.series, std::move(four.series));
+  append(m.series, std::move(events.series));
+  if (hasBolus(history))
+    m.series.push_back({"past_ramus", "share", shareBeyond(history.bolus, rules.ramus_m)});
+  m.conservation = countParticles(history);
+  judgeLabel(m);
+  return m;
+}
+}  // namespace swallowclip::scoring

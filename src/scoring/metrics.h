@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// What was measured on one history: numbers with their unit, frame and rule in words, the scores
+// they lead to, and why something could not be judged. Values only; render and cli read this.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace swallowclip::scoring {
+
+inline constexpr int kComponents = 17;  ///< MBSImP
+
+/// One measured number. `unit`: "mm", "mm/s", "s", "share", "count", "mm2"; "" for ratios.
+struct Quantity {
+  std::string name;
+  std::optional<double> value;  ///< empty: not judged, see `reason`
+  std::string unit;
+  int frame = -1;      ///< where it was read; -1 when it belongs to the whole swallow
+  std::string rule;    ///< how it is defined, in words
+  std::string reason;  ///< why there is no value
+};
+
+/// A measured event; `frame` is the first frame at or after its time.
+struct MeasuredEvent {
+  std::string name;
+  std::optional<double> time_s;
+  int frame = -1;
+  std::string rule, reason;
+};
+
+/// A curve over time for plots; NaN where it is not defined. [frame]
+struct Series {
+  std::string name, unit;
+  std::vector<double> values;
+};
+
+/// Particle counts at the last frame, and the solver's own error figures.
+struct Conservation {
+  int particlesStart = 0, particlesEnd = 0, swallowed = 0;
+  int leftInOral = 0, leftInPharynx = 0, inAirway = 0, inNasopharynx = 0, inEsophagus = 0;
+  int escaped = 0;
+  double swallowedFraction = 0, filmFraction = 0;
+  double meanDensityError = 0, maxDensityError = 0;
+
+  /// Every particle that started is somewhere.
+  bool balanced() const {
+    return particlesStart == swallowed + particlesEnd + escaped &&
+           particlesEnd == leftInOral + leftInPharynx + inAirway + inNasopharynx + inEsophagus;
+  }
+};
+
+struct Metrics {
+  int component = 0, score = -1;  ///< what the clip is meant to show (0/-1: nothing)
+  std::vector<Quantity> quantities;
+  std::vector<MeasuredEvent> events;
+  std::vector<Series> series;
+  std::map<int, std::optional<int>> scores;  ///< 1..17
+  std::map<int, std::string> reasons;        ///< per component: why this score, or why none
+  std::map<int, bool> ambiguous;             ///< judged components: too near a cut to ship
+  /// The intended score was measured and is not ambiguous. Empty when nothing was intended or the
+  /// component could not be judged; then `labelReason` says why.
+  std::optional<bool> labelConfirmed;
+  std::string labelReason;
+  std::optional<Conservation> conservation;  ///< empty without bolus
+
+  const Quantity* quantity(std::string_view name) const;
+  const MeasuredEvent* event(std::string_view name) const;
+  const Series* find(std::string_view seriesName) const;
+};
+
+/// All of it as a plain text table.
+std::string formatTable(const Metrics& metrics);
+}  // namespace swallowclip::scoring

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// The solver on cases with known answers.
+#include "bolus/solver.h"
+
+#include <gtest/gtest.h>
+
+#include "shapes.h"
+
+namespace swallowclip::bolus {
+namespace {
+BolusDef smallBolus(double viscosity_Pas) {
+  BolusDef d;
+  d.fluid.viscosity_Pas = viscosity_Pas;
+  d.volume_m3 = 1e-6;
+  return d;
+}
+
+TEST(BolusDef, FiveMillilitresAreThe621ParticlesOfTheThesis) {
+  EXPECT_EQ(BolusDef{}.particleCount(), 621);
+}
+TEST(BolusDef, BadNumbersAreNamed) {
+  const WallMotion walls = testing::still(testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 2e-3));
+  BolusDef d;
+  d.spacing_m = 0;
+  Solver s(BolusDef{}, walls, 1);
+  d.spacing_m = -1;
+  EXPECT_NE(d.validate().find("spacing_m"), std::string::npos);
+}
+
+TEST(Solver, FreeFall) {
+  const WallMotion walls = testing::still(testing::box({-0.1, -0.1, -0.5}, {0.1, 0.1, 0.1}, 0.02));
+  Solver s(smallBolus(1), walls, 1);
+  std::vector<Vec3> drop;
+  for (int i = 0; i < 64; ++i) drop.push_back(2e-3 * Vec3(i % 4, i / 4 % 4, i / 16));
+  ASSERT_TRUE(s.place(0, drop));
+  ASSERT_TRUE(s.advanceTo(0.2));
+  const double v = s.particles().velocities[0].z();
+  EXPECT_NEAR(v, -9.81 * 0.2, 1e-6);
+  // symplectic Euler falls dt v / 2 too far
+  EXPECT_NEAR(s.particles().positions[0].z(), -0.5 * 9.81 * 0.04, 2e-3);
+  EXPECT_NEAR((s.particles().positions[63] - s.particles().positions[0]).norm(),
+              2e-3 * std::sqrt(27.), 2e-5);
+}
+
+TEST(Solver, SurfaceMustBeClosed) {
+  testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 2e-3);
+  mesh.triangles.pop_back();
+  const WallMotion walls = testing::still(mesh);
+  Solver s(smallBolus(1), walls, 1);
+  const auto r = s.seed(0, {});
+  ASSERT_FALSE(r);
+  EXPECT_NE(r.error().problem.find("open"), std::string::npos);
+}
+
+TEST(Solver, TooSmallRoomIsSaid) {
+  const WallMotion walls = testing::still(testing::box({0, 0, 0}, {0.008, 0.008, 0.008}, 2e-3));
+  Solver s(smallBolus(1), walls, 1);
+  const auto r = s.seed(0, {});
+  ASSERT_FALSE(r);
+  EXPECT_NE(r.error().problem.find("places for"), std::string::npos);
+}
+
+TEST(Solver, HydrostaticColumn) {
+  // 12 x 12 mm column: 5 mL stand 34.5 mm high
+  const WallMotion walls = testing::still(testing::box({0, 0, 0}, {0.012, 0.012, 0.05}, 1.5e-3));
+  BolusDef d;
+  d.fluid.viscosity_Pas = 0.1;
+  Solver s(d, walls, 2);
+  ASSERT_TRUE(s.seed(0, {}));
+  const auto rest = s.relax(0);
+  ASSERT_TRUE(rest) << rest.error().text();
+  EXPECT_TRUE(rest->atRest) << rest->maxDrift_ms << " " << rest->meanDrift_ms;
+  ASSERT_TRUE(s.advanceTo(0.2));
+  EXPECT_LT(s.stats().meanDensityError, 3e-3);
+  EXPECT_LT(s.stats().maxDensityError, 0.05);
+  EXPECT_EQ(s.ledger().fluid, 621);
+  EXPECT_EQ(s.ledger().escaped, 0);
+  double top = 0, middle = 0;
+  for (const Vec3& p : s.particles().positions) {
+    top = std::max(top, p.z());
+    middle += p.z() / 621;
+  }
+  const double height = d.particleCount() * 8e-9 / 0.012 / 0.012;
+  EXPECT_NEAR(middle, height / 2, 0.05 * height) << "top " << top;
+  EXPECT_NEAR(top, height - 1e-3, 2e-3);
+}
+
+TEST(Solver, ThreadsNeverChangeTheResult) {
+  const WallMotion walls = testing::closingTube({});
+  std::uint64_t digest[3];
+  for (int threads = 1; threads <= 3; ++threads) {
+    BolusDef d;
+    d.swallowedAt_s_m = 0.08;
+    Solver s(d, walls, threads);
+    ASSERT_TRUE(s.seed(0, {0, 0.06}));
+    ASSERT_TRUE(s.advanceTo(0.03));
+    digest[threads - 1] = s.digest();
+  }
+  EXPECT_EQ(digest[0], digest[1]);
+  EXPECT_EQ(digest[0], digest[2]);
+}
+
+TEST(Solver, SealedPocketIsReported) {
+  // the tube ends at 50 mm and the wave runs to its end: 5 mL have nowhere to go
+  testing::TubeDef tube;
+  tube.length_m = 0.05;
+  const WallMotion walls = testing::closingTube(tube);
+  BolusDef d;
+  d.swallowedAt_s_m = 1;
+  Solver s(d, walls, 2);
+  ASSERT_TRUE(s.seed(0, {}));
+  Result<StepReport> r;
+  for (int frame = 1; frame <= 20 && (r = s.advanceTo(frame / 30.0)); ++frame) {
+  }
+  ASSERT_FALSE(r);
+  EXPECT_NE(r.error().problem.find("sealed pocket"), std::string::npos) << r.error().text();
+  EXPECT_NE(r.error().place.find("s = "), std::string::npos) << r.error().text();
+}
+}  // namespace
+}  // namespace swallowclip::bolus

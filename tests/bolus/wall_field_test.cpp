@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// Wall integrals against brute-force quadrature of the kernel over the volume outside.
+#include "bolus/wall_field.h"
+
+#include <gtest/gtest.h>
+
+#include "shapes.h"
+
+namespace swallowclip::bolus {
+namespace {
+struct Brute {
+  double lambda = 0;
+  Vec3 grad = Vec3::Zero();
+};
+// Midpoint rule over the support ball; each cell counts with its share outside the box.
+Brute brute(const Kernel& k, const Vec3& p, const Vec3& low, const Vec3& high) {
+  Brute out;
+  const int n = 60;
+  const double cell = k.support_m() / n, dV = cell * cell * cell;
+  for (int x = -n; x < n; ++x)
+    for (int y = -n; y < n; ++y)
+      for (int z = -n; z < n; ++z) {
+        const Vec3 d = cell * Vec3(x + 0.5, y + 0.5, z + 0.5);
+        const double r = d.norm();
+        if (r >= k.support_m()) continue;
+        const Vec3 lower = (p + d).array() - cell / 2, upper = (p + d).array() + cell / 2;
+        const Vec3 overlap = upper.cwiseMin(high) - lower.cwiseMax(low);
+        const double outside = 1 - overlap.cwiseMax(0).prod() / dV;
+        out.lambda += k.w(r) * dV * outside;
+        out.grad += k.slope(r) / r * -d * dV * outside;  // gradient at p of W(p - y)
+      }
+  return out;
+}
+
+void compare(const Vec3& low, const Vec3& high, const Vec3& p, double spacing, double tolerance) {
+  const Kernel kernel(KernelKind::cubicSpline, 2 * spacing);
+  const KernelTable table(kernel);
+  const testing::Mesh mesh = testing::box(low, high, 1.1e-3);  // diagonals of 1.5 mm
+  WallField field(table, spacing);
+  const std::vector<Vec3> v(mesh.positions.size(), Vec3(0.1, -0.2, 0.3));
+  field.build(mesh.triangles, mesh.positions, v, p, p);
+  const WallSample got = field.sample(p);
+  const Brute want = brute(kernel, p, low, high);
+  EXPECT_NEAR(got.lambda, want.lambda, tolerance) << p.transpose();
+  const double scale = 1 / kernel.support_m();
+  EXPECT_LT((got.gradLambda - want.grad).norm(), 5 * tolerance * scale)
+      << got.gradLambda.transpose() << " wanted " << want.grad.transpose();
+  // all walls move alike: the flux is that velocity along the gradient
+  EXPECT_NEAR(got.flux_s, v[0].dot(got.gradLambda), 1e-9 * scale);
+}
+
+TEST(WallField, PlaneAtManyDistances) {
+  for (double d : {0.05e-3, 0.4e-3, 0.8e-3, 1.5e-3, 3e-3, 3.9e-3})
+    compare({-0.02, -0.02, 0}, {0.02, 0.02, 0.04}, {0.13e-3, 0.31e-3, d}, 2e-3, 5e-3);
+}
+TEST(WallField, PlaneAtOneMillimetre) {
+  for (double d : {0.05e-3, 0.4e-3, 1e-3})
+    compare({-0.01, -0.01, 0}, {0.01, 0.01, 0.02}, {0.13e-3, 0.31e-3, d}, 1e-3, 5e-3);
+}
+TEST(WallField, CubeCorner) {
+  compare({0, 0, 0}, {0.02, 0.02, 0.02}, {0.8e-3, 1.1e-3, 0.9e-3}, 2e-3, 5e-3);
+  compare({0, 0, 0}, {0.02, 0.02, 0.02}, {0.2e-3, 0.3e-3, 2e-3}, 2e-3, 5e-3);
+}
+TEST(WallField, ThinGap) {
+  compare({-0.02, -0.02, 0}, {0.02, 0.02, 1e-4}, {0, 0, 4e-5}, 2e-3, 5e-3);
+  compare({-0.02, -0.02, 0}, {0.02, 0.02, 1e-3}, {0.2e-3, 0, 4e-4}, 2e-3, 5e-3);
+}
+TEST(WallField, FarInsideIsFree) {
+  const testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 1e-3);
+  const KernelTable table{Kernel(KernelKind::cubicSpline, 4e-3)};
+  WallField field(table, 2e-3);
+  const std::vector<Vec3> v(mesh.positions.size(), Vec3::Zero());
+  const Vec3 p(0.01, 0.01, 0.01);
+  field.build(mesh.triangles, mesh.positions, v, p, p);
+  EXPECT_EQ(field.sample(p).lambda, 0);
+}
+TEST(WallField, LargeTrianglesAreCut) {
+  const testing::Mesh coarse = testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 1);
+  const testing::Mesh fine = testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 1e-3);
+  const KernelTable table{Kernel(KernelKind::cubicSpline, 4e-3)};
+  const std::vector<Vec3> v(fine.positions.size(), Vec3::Zero());
+  const Vec3 p(1.2e-3, 5e-3, 0.7e-3);
+  WallField a(table, 2e-3), b(table, 2e-3);
+  a.build(coarse.triangles, coarse.positions, v, p, p);
+  b.build(fine.triangles, fine.positions, v, p, p);
+  EXPECT_NEAR(a.sample(p).lambda, b.sample(p).lambda, 5e-3);
+}
+TEST(WallField, ContactsTellSideAndGap) {
+  const testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.02, 1e-3}, 1e-3);
+  const KernelTable table{Kernel(KernelKind::cubicSpline, 4e-3)};
+  const std::vector<Vec3> v(mesh.positions.size(), Vec3::Zero());
+  WallField field(table, 2e-3);
+  field.build(mesh.triangles, mesh.positions, v, Vec3::Zero(), Vec3::Constant(0.02));
+  std::vector<Contact> c;
+  field.contacts({0.0101, 0.0102, 0.3e-3}, 1.8e-3, c);
+  ASSERT_GE(c.size(), 2u);
+  EXPECT_NEAR(c[0].distance_m, 0.3e-3, 1e-12);
+  EXPECT_NEAR(c[0].inward.z(), 1, 1e-12);
+  field.contacts({0.0101, 0.0102, -0.2e-3}, 1.8e-3, c);
+  ASSERT_EQ(c.size(), 1u);
+  EXPECT_NEAR(c[0].distance_m, -0.2e-3, 1e-12);
+  field.contacts({-0.1e-3, -0.1e-3, -0.1e-3}, 1.8e-3, c);  // beyond a corner
+  ASSERT_EQ(c.size(), 1u);
+  EXPECT_LT(c[0].distance_m, 0);
+  EXPECT_GT(c[0].inward.minCoeff(), 0.5);
+}
+}  // namespace
+}  // namespace swallowclip::bolus

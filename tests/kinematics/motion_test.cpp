@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// Proofs of the default scene's motion, for every sequential mesh of all five component-4 swallows.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "airway/interpenetration.h"
+#include "kinematics/choreography.h"
+#include "kinematics/events.h"
+#include "scene/lumen_file.h"
+#include "scene/swallow_file.h"
+
+namespace swallowclip {
+namespace {
+const std::filesystem::path kScenes = std::filesystem::path(SWALLOWCLIP_SOURCE_DIR) / "scenes";
+
+struct Scene {
+  anatomy::Lumen lumen;
+  anatomy::SoftParts soft;
+  Scene(anatomy::LumenDef l, anatomy::SoftDef d) : lumen(std::move(l)), soft(lumen, std::move(d)) {}
+};
+
+const Scene& adult() {
+  static const Scene scene(scene::loadLumenDef(kScenes / "adult/lumen.json").value(),
+                           scene::loadSoftDef(kScenes / "adult/soft.json").value());
+  return scene;
+}
+
+kinematics::SwallowDef swallow(int score) {
+  auto def = scene::loadSwallow(kScenes / "swallows" / fmt::format("c04-s{}.json", score));
+  EXPECT_TRUE(def) << (def ? "" : def.error().text());
+  return def ? *def : kinematics::SwallowDef{};
+}
+
+class Motion : public testing::TestWithParam<int> {};
+
+TEST(DefaultScene, SolidsAndSkinAreClosed) {
+  const auto& skin = adult().lumen.skin();
+  const auto report = checkManifold(skin.triangles, static_cast<int>(skin.wall.size()));
+  EXPECT_TRUE(report.closed()) << report.text();
+  for (const auto& s : adult().soft.structures()) {
+    const auto r = checkManifold(s.mesh.triangles, static_cast<int>(s.mesh.positions.size()));
+    EXPECT_TRUE(r.closed()) << s.name << ": " << r.text();
+    EXPECT_GT(volume(s.mesh), 0) << s.name;
+  }
+}
+
+TEST(DefaultScene, TongueHasTheThesisBreadthAndAPlausibleVolume) {
+  const auto& tongue = adult().soft.structures().front();
+  double lo = 0, hi = 0;
+  for (const Vec3& p : tongue.mesh.positions) {
+    lo = std::min(lo, p.x());
+    hi = std::max(hi, p.x());
+  }
+  EXPECT_NEAR(hi - lo, 51.9e-3, 0.05e-3);  // Hopkin 1967
+  const double volume_cm3 = adult().soft.tongueVolume_m3() * 1e6;
+  EXPECT_GT(volume_cm3, 60);  // clinical-reference 5: 67-83, body without floor of mouth
+  EXPECT_LT(volume_cm3, 103);
+}
+
+TEST(DefaultScene, NormalSwallowIs109MeshesOver318Centiseconds) {
+  const auto baked = kinematics::bake({}, adult().lumen, adult().soft, swallow(0), 34);
+  EXPECT_EQ(baked.sequence.frames(), 109);
+  EXPECT_NEAR(baked.sequence.end_s(), 3.18, 0.01);
+}
+
+TEST_P(Motion, TongueKeepsItsVolumeAndWallsNeverCross) {
+  const auto baked = kinematics::bake({}, adult().lumen, adult().soft, swallow(GetParam()), 34);
+  ThreadPool pool(2);
+  const auto& tongue = baked.sequence.structures.front();
+  for (int k = 0; k < baked.sequence.frames(); ++k) {
+    const double v = volume(tongue.frames[k], tongue.triangles);
+    ASSERT_NEAR(v / adult().soft.tongueVolume_m3(), 1, 0.02) << "frame " << k;
+    const auto hit = airway::maxInterpenetration(baked.skin[k], adult().lumen.skin().triangles, pool);
+    ASSERT_LE(hit.depth_m, 0.5e-3) << "frame " << k << ", vertex " << hit.vertex << ", s "
+                                   << adult().lumen.skin().s_m[hit.vertex] << ", u " << adult().lumen.skin().u[hit.vertex];
+  }
+}
+
+// Room of the main lumen from the contact front to the end of the path.
+double room_m3(const anatomy::Lumen& lumen, const anatomy::LumenPose& pose, double from_m, double to_m) {
+  const anatomy::LumenSheets sheets = lumen.evaluate(pose);
+  double sum = 0;
+  for (int r = lumen.rowAt(from_m); r + 1 < lumen.rowAt(to_m); ++r)
+    for (int c = 0; c + 1 < lumen.columns(); ++c) {
+      const auto f = [&](int dr, int dc) { return sheets.f[lumen.index(r + dr, c + dc)]; };
+      const auto m = [&](int dr, int dc) { return sheets.m[lumen.index(r + dr, c + dc)]; };
+      const Vec3 gap = 0.25 * (m(0, 0) + m(0, 1) + m(1, 0) + m(1, 1) - f(0, 0) - f(0, 1) - f(1, 0) - f(1, 1));
+      const Vec3 area = 0.5 * (f(1, 1) - f(0, 0)).cross(f(1, 0) - f(0, 1));
+      sum += std::abs(gap.dot(area));
+    }
+  return sum;
+}
+
+TEST_P(Motion, TheHeldBolusAlwaysHasRoom) {
+  const auto def = swallow(GetParam());
+  const kinematics::Choreography motion(adult().lumen, def);
+  for (double t = 0; t <= def.duration_s; t += 1.0 / 34) {
+    const double tau = t - def.bpm_s;
+    if (def.frontAmplitude > 0 && def.front_m(tau) > 0.12) break;  // tail is in the pharynx
+    const double room = room_m3(adult().lumen, motion.lumenPose(t), 0, 0.15);
+    ASSERT_GE(room, 1.1 * def.volume_m3) << "t = " << t;
+  }
+  const double held = room_m3(adult().lumen, motion.lumenPose(0), 0, 0.068);
+  EXPECT_GE(held, 1.15 * def.volume_m3);
+  EXPECT_LE(held, 1.3 * def.volume_m3);
+}
+
+TEST(PlannedEvents, ComeInTheRequiredOrder) {
+  std::map<std::string, double> t;
+  for (const auto& [name, time] : kinematics::plannedEvents(swallow(0))) t[name] = time;
+  EXPECT_LT(t["tip_press"], t["BPM"]);
+  EXPECT_LE(t["BPM"], t["HYB"] + 1e-9);
+  EXPECT_LT(t["HYB"], t["LVC"]);
+  EXPECT_LT(t["UESO"], t["UESMax"]);
+  EXPECT_LT(t["UESMax"], t["UESC"]);
+  EXPECT_LE(t["UESC"], t["LVCoff"] + 0.1);
+  EXPECT_LT(t["LVCoff"], t["SwRest"]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Component4, Motion, testing::Range(0, 5));
+}  // namespace
+}  // namespace swallowclip

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "render/fluid_surface.h"
+#include "shapes.h"
+
+namespace swallowclip::render {
+namespace {
+
+constexpr float kDx = 2e-3f;
+
+std::vector<FluidParticle> freeParticles(const std::vector<Vec3f>& p) {
+  std::vector<FluidParticle> out;
+  for (const Vec3f& x : p) out.push_back({x});
+  return out;
+}
+
+double volumeOf(const FluidSurface& s) {
+  std::vector<Vec3> p;
+  for (const Vec3f& x : s.positions) p.push_back(x.cast<double>());
+  return volume(p, s.triangles);
+}
+
+int openEdges(const FluidSurface& s) {
+  std::map<std::pair<int, int>, int> walks;  // forwards minus backwards
+  for (const Triangle& t : s.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      walks[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  int open = 0;
+  for (const auto& [edge, n] : walks) open += n != 0;
+  return open;
+}
+
+TEST(FluidSurface, FiveMillilitresKeepTheirVolume) {
+  const auto p = test::lattice({0, -0.02f, -0.01f}, {0.0106f, 0.0106f, 0.0106f}, kDx);
+  const FluidSurface s = fluidSurface(freeParticles(p), {});
+  const double exact = static_cast<double>(p.size()) * kDx * kDx * kDx;
+  EXPECT_NEAR(volumeOf(s) / exact, 1.0, 0.05) << p.size() << " particles";
+  EXPECT_EQ(openEdges(s), 0);
+}
+
+TEST(FluidSurface, NormalsPointOut) {
+  const Vec3f centre(0.01f, 0.02f, -0.03f);
+  const auto p = test::lattice(centre, Vec3f::Constant(0.01f), kDx);
+  const FluidSurface s = fluidSurface(freeParticles(p), {});
+  ASSERT_FALSE(s.positions.empty());
+  for (std::size_t i = 0; i < s.positions.size(); ++i)
+    EXPECT_GT(s.normals[i].dot((s.positions[i] - centre).normalized()), 0.5f);
+}
+
+TEST(FluidSurface, ALoneDropDoesNotVanish) {
+  const std::vector<FluidParticle> one{{Vec3f(0, 0, 0)}};
+  const double ratio = volumeOf(fluidSurface(one, {})) / (kDx * kDx * kDx);
+  EXPECT_GT(ratio, 0.5);
+  EXPECT_LT(ratio, 2.0);
+}
+
+TEST(FluidSurface, FilmLiesFlatOnItsWall) {
+  std::vector<FluidParticle> film;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < 6; ++k)
+      film.push_back({Vec3f(kDx * static_cast<float>(i), kDx * static_cast<float>(k), 0),
+                      Vec3f(0, 0, 1)});
+  const FluidSurface s = fluidSurface(film, {});
+  float thickness = 0;
+  for (const Vec3f& x : s.positions) thickness = std::max(thickness, std::abs(x.z()));
+  EXPECT_LT(thickness, 0.8f * kDx);
+  EXPECT_GT(thickness, 0.2f * kDx);
+  EXPECT_EQ(openEdges(s), 0);
+}
+
+TEST(FluidSurface, NothingFromNothing) { EXPECT_TRUE(fluidSurface({}, {}).triangles.empty()); }
+
+TEST(FluidSurface, DoesNotCrawlWithTheGrid) {
+  // the same drop half a cell further must keep its volume: no popping while the bolus moves
+  const auto volumeAt = [](float shift) {
+    return volumeOf(fluidSurface(
+        freeParticles(test::lattice({shift, 0, 0}, {0.008f, 0.01f, 0.006f}, kDx)), {}));
+  };
+  EXPECT_NEAR(volumeAt(0.5e-3f) / volumeAt(0), 1.0, 0.01);
+}
+}  // namespace
+}  // namespace swallowclip::render
