@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/error.h"
 #include "frame/history.h"
 #include "pipeline/progress.h"
 #include "pipeline/run_options.h"
