@@ -131,7 +131,8 @@ LumenSheets Lumen::evaluate(const LumenPose& pose) const {
     for (int c = 0; c < columns(); ++c) {
       const int i = index(r, c);
       out.f[i] = fixedPoint(s(r), u(c), &out.fNormal[r]);
-      const double inner = 1 - u(c) * u(c);
+      // All of the inlet slides as one; the slip fades out over the lateral walls.
+      const double inner = 1 - smoothstep((std::abs(u(c)) - 0.5) / 0.5);
       Vec3 nrm;
       const double at = s(r) + partner * inner + pose.shear_m[i];
       const double gap_m = std::max(pose.gap_m[i], def_.closedGap_m);

@@ -2,6 +2,7 @@
 #include "kinematics/choreography.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace swallowclip::kinematics {
@@ -11,6 +12,23 @@ constexpr double kLarynxForwardGap = 1.0;    // share of anterior larynx travel 
 constexpr double kInvertedTip_m = 0.114;     // where the epiglottis meets the arytenoids; assumed
 constexpr double kArytenoidTilt_rad = 0.35;  // 20 degrees forward at closure; assumed 15-30
 const Vec3 kCricoarytenoidJoint_m(0, 28e-3, -96e-3);  // assumed, of the default scene
+
+// Map of [0, end] onto itself: the given knots inside, the identity before the first one. Knots close
+// together below it keep the curve's bend from reaching back to the palate.
+Curve identityExcept(const std::vector<std::array<double, 2>>& knots, double end) {
+  std::vector<double> x{0}, y{0};
+  for (double back : {0.010, 0.005}) {
+    x.push_back(knots.front()[0] - back);
+    y.push_back(x.back());
+  }
+  for (const auto& k : knots) {
+    x.push_back(k[0]);
+    y.push_back(k[1]);
+  }
+  x.push_back(end);
+  y.push_back(end);
+  return Curve(x, y);
+}
 
 // Smooth maximum of non-negative lengths (p-norm): C1 where the plain maximum has a kink.
 double smoothMax(std::initializer_list<double> values) {
@@ -117,12 +135,19 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
   const double shut = tip + 2e-4;
   const double arytenoid = arytenoidFree + closure * (shut - arytenoidFree);
   const double end = d.length_m;
-  const Curve sigmaM({0, 0.099, d.tongueEnd_m, d.epiglottisTip_m, d.arytenoid_m, d.uesStart_m, 0.185, end},
-                     {0, 0.099, d.tongueEnd_m, tip, std::max(arytenoid, shut), std::max(d.uesStart_m - up, shut + 5e-3),
-                      0.185 - 0.8 * up, end});
+  const Curve sigmaM = identityExcept(
+      {{0.099, 0.099}, {d.tongueEnd_m, d.tongueEnd_m}, {d.epiglottisTip_m, tip},
+       {d.arytenoid_m, std::max(arytenoid, shut)},
+       {d.uesStart_m, std::max(d.uesStart_m - up, shut + 5e-3)}, {0.185, 0.185 - 0.8 * up}}, end);
   const double lift = track("shortening", tau);
-  const Curve sigmaF({0, 0.090, d.uesStart_m, 0.185, end},
-                     {0, 0.090, d.uesStart_m - lift, 0.185 - 0.8 * lift, end});
+  const Curve sigmaF = identityExcept(
+      {{0.090, 0.090}, {d.uesStart_m, d.uesStart_m - lift}, {0.185, 0.185 - 0.8 * lift}}, end);
+  // Over the shut inlet the lumen is one even channel from the tongue base to the post-cricoid wall:
+  // the folded tissue takes its gap from where it lies, not from what it is.
+  constexpr double kAbove_m = 0.100, kBelow_m = 0.142;
+  const auto along = [&](double s) {
+    return std::clamp((sigmaM(s) - sigmaM(kAbove_m)) / (sigmaM(kBelow_m) - sigmaM(kAbove_m)), 0.0, 1.0);
+  };
   const double frontAt = def_.frontAmplitude > 0 ? def_.front_m(tau) : -1.0;
   const double bulge = track("ppw_bulge", tau);
   p.gap_m.resize(static_cast<std::size_t>(lumen_.rows()) * lumen_.columns());
@@ -136,12 +161,21 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
     p.sigmaF_m.push_back(sigmaF(s));
     p.bulge_m.push_back(bulge * plateau(s, frontAt - 0.03, frontAt - 0.005, frontAt + 0.005, frontAt + 0.03) *
                         plateau(s, 0.088, 0.096, 0.14, 0.15));
-    const double open = smoothstep((s - frontAt) / kFrontRamp_m);
-    const double back = release(s, tau);
+    const bool folds = s > kAbove_m && s < kBelow_m;
+    const double share = folds ? along(s) : 0;
+    const double from = folds ? s + closure * (kAbove_m + share * (kBelow_m - kAbove_m) - s) : s;
+    const double open = smoothstep((from - frontAt) / kFrontRamp_m);
+    const double back = release(from, tau);
     for (int c = 0; c < lumen_.columns(); ++c) {
       const double u = lumen_.u(c);
       const int i = lumen_.index(r, c);
-      p.gap_m[i] = std::max(d.closedGap_m, open * chamber(s, u, tau) + (1 - open) * back * restPosture(s, u));
+      const auto gap = [&](double at) {
+        return open * chamber(at, u, tau) + (1 - open) * back * restPosture(at, u);
+      };
+      double gap_m = gap(s);
+      if (folds && closure > 0)
+        gap_m += closure * ((1 - share) * gap(kAbove_m) + share * gap(kBelow_m) - gap_m);
+      p.gap_m[i] = std::max(d.closedGap_m, gap_m);
       p.shear_m[i] = pocketOpen * lumen_.valleculaShear(s, u);
     }
   }
