@@ -31,6 +31,7 @@ struct Solver::Impl {
 
   void evaluateWalls(double t_s);
   int pushInside();
+  void keepOutOfSlits(int i);
   void updateStates();
   void updatePath(bool all);
   void sampleWalls();
@@ -50,6 +51,7 @@ struct Solver::Impl {
   std::vector<Vec3> wallPositions, wallVelocities;
   std::vector<std::vector<Contact>> contacts;
   std::vector<WallSample> walls;
+  std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
   std::vector<std::uint8_t> active;  // takes part in the pressure solve
   Neighbours neighbours;
   Projection projection;

@@ -60,10 +60,27 @@ int Solver::Impl::pushInside() {
   return static_cast<int>(pool.sumChunks(n, kWallChunk, [&](int begin, int end) {
     double rescued = 0;
     for (int i = begin; i < end; ++i)
-      if (particles.state[i] != State::swallowed)
+      if (particles.state[i] != State::swallowed) {
         rescued += projectInside(field, def.spacing_m, particles.positions[i], contacts[i]);
+        keepOutOfSlits(i);
+      }
     return rescued;
   }));
+}
+
+// A gap too narrow for particles counts as shut: walls may close on a particle (film), but none
+// flows in from a wider place. Instead it stays before the slit's mouth, moving with the wall there.
+void Solver::Impl::keepOutOfSlits(int i) {
+  const double shut_m = kFilmGap * def.spacing_m;
+  if (carried.empty() || particles.state[i] != State::fluid || localGap_m(contacts[i]) >= shut_m)
+    return;
+  std::vector<Contact> before;
+  Vec3 place = carried[i].first;
+  projectInside(field, def.spacing_m, place, before);
+  if (before.empty() || before[0].distance_m < 0 || localGap_m(before) < shut_m) return;
+  particles.positions[i] = place;
+  particles.velocities[i] = carried[i].second;
+  contacts[i] = std::move(before);
 }
 
 // Film by the width of the lumen alone, never by density.
@@ -172,8 +189,11 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
           .iterations;
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, v);
   report.clamped = clampSpeeds(dt_s);
+  carried.resize(v.size());
   for (std::size_t i = 0; i < v.size(); ++i) {
     if (particles.state[i] == State::swallowed) continue;
+    const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
+    carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
     if (particles.state[i] == State::film) {  // rides on the two sheets that hold it
       const int facing = facingContact(contacts[i]);
       v[i] = facing < 0 ? contacts[i][0].velocity
