@@ -62,7 +62,7 @@ enum class WallId : std::uint8_t { palate, velum, posterior, tongue, larynx, eso
 /// The airway-skin's topology and material coordinates. Triangles face out of the lumen.
 struct SkinLayout {
   std::vector<Triangle> triangles;
-  std::vector<std::uint8_t> wall, branch;  ///< [vertex]; branch 0 main, 1 nasopharynx, 2 larynx
+  std::vector<std::uint8_t> wall, branch;  ///< [vertex]; branch as in bolus::WallMotion
   std::vector<double> s_m, u;
 };
 

@@ -4,6 +4,7 @@
 
 namespace swallowclip::anatomy {
 namespace {
+constexpr int kMouthLoops = 2;  // labelled as the mouth of a branch
 using IndexGrid = std::vector<std::vector<int>>;
 
 void quad(std::vector<Triangle>& t, int a, int b, int c, int d, bool flip) {
@@ -103,7 +104,7 @@ void Lumen::buildSkin() {
         const WallId wall = branch == 2 ? WallId::larynx
                             : front     ? WallId::velum
                                         : WallId::posterior;
-        addVertex(sheet, d * loop + k, wall, branch, s(r), u(c));
+        addVertex(sheet, d * loop + k, wall, d < kMouthLoops ? branch + 2 : branch, s(r), u(c));
       }
     const int inner = (hole.rowSpan() - 1) * (hole.columnSpan() - 1);
     for (int i = 0; i < inner; ++i)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Inside of the solver: the fluid between the walls of one moment, and one substep.
 #pragma once
+#include <array>
+#include <span>
 #include <vector>
 
 #include "bolus/contact_response.h"
@@ -30,6 +32,7 @@ struct Solver::Impl {
   void finishFrame();  ///< path coordinates of all particles, escape check
 
   void evaluateWalls(double t_s);
+  std::span<const std::uint8_t> shutBranches(double t_s);
   int pushInside();
   void keepOutOfSlits(int i);
   void updateStates();
@@ -57,6 +60,8 @@ struct Solver::Impl {
   Projection projection;
   Viscosity viscosity;
 
+  std::array<bool, 3> shutBefore{};   // [branch]
+  std::vector<std::uint8_t> skipped;  // [triangle] of shut branches
   double time_s = 0;
   bool frozen = false;  // walls stand still (settling)
   double settlingViscosity_Pas = 0;

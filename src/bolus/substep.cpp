@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bolus/solver_impl.h"
@@ -52,7 +53,27 @@ void Solver::Impl::evaluateWalls(double t_s) {
     low = low.cwiseMin(particles.positions[i]);
     high = high.cwiseMax(particles.positions[i]);
   }
-  field.build(motion->triangles, wallPositions, wallVelocities, low, high);
+  field.build(motion->triangles, wallPositions, wallVelocities, low, high, shutBranches(t_s));
+}
+
+// Triangles of branches that are shut and hold no fluid, [triangle] or empty.
+std::span<const std::uint8_t> Solver::Impl::shutBranches(double t_s) {
+  if (!motion->sealed || motion->branch.empty()) return {};
+  std::array<bool, 3> shut{};
+  for (int b : {1, 2}) {
+    shut[b] = motion->sealed(t_s, b);
+    for (std::size_t i = 0; shut[b] && i < particles.branch.size(); ++i)
+      shut[b] = particles.state[i] == State::swallowed || particles.branch[i] != b;
+  }
+  if (!shut[1] && !shut[2]) return {};
+  if (shut != shutBefore || skipped.empty()) {
+    skipped.assign(motion->triangles.size(), 0);
+    for (std::size_t k = 0; k < skipped.size(); ++k)
+      for (int v : motion->triangles[k])
+        if (const int b = motion->branch[v]; b != 0 && shut[(b - 1) % 2 + 1]) skipped[k] = 1;
+    shutBefore = shut;
+  }
+  return skipped;
 }
 
 int Solver::Impl::pushInside() {

@@ -47,6 +47,7 @@ NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> x,
   NearestPoint best;
   double best2 = INFINITY, bestDistance = INFINITY;
   for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
+    if (!skip.empty() && skip[k]) continue;
     const Triangle& t = triangles[k];
     const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
     // no point of abc is nearer than its corner a less the longer of its two edges there
@@ -110,7 +111,8 @@ void WallField::addPiece(const Piece& t, int depth) {
 }
 
 void WallField::build(std::span<const Triangle> triangles, std::span<const Vec3> x,
-                      std::span<const Vec3> v, const Vec3& low, const Vec3& high) {
+                      std::span<const Vec3> v, const Vec3& low, const Vec3& high,
+                      std::span<const std::uint8_t> skip) {
   pieces_.clear();
   centroids_.clear();
   quadPoints_.clear();
@@ -119,6 +121,7 @@ void WallField::build(std::span<const Triangle> triangles, std::span<const Vec3>
   const double reach = table_->support_m() + 0.5 * spacing_m_;
   const Vec3 boxLow = low.array() - reach, boxHigh = high.array() + reach;
   for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
+    if (!skip.empty() && skip[k]) continue;
     const Triangle& t = triangles[k];
     const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
     const Vec3 lowest = a.cwiseMin(b).cwiseMin(c), highest = a.cwiseMax(b).cwiseMax(c);

@@ -8,6 +8,7 @@
 // smooth and done by quadrature. Contacts are the nearest wall points with their inward direction.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -48,9 +49,11 @@ class WallField {
   /// 3 quadrature points per triangle at coarse spacing, 7 at fine (below 1.5 mm).
   WallField(const KernelTable& table, double spacing_m);
 
-  /// Takes the triangles within reach of the box [low, high], cut where they are large.
+  /// Takes the triangles within reach of the box [low, high], cut where they are large, but none
+  /// that `skip` marks ([triangle], may be empty).
   void build(std::span<const Triangle> triangles, std::span<const Vec3> positions,
-             std::span<const Vec3> velocities, const Vec3& low, const Vec3& high);
+             std::span<const Vec3> velocities, const Vec3& low, const Vec3& high,
+             std::span<const std::uint8_t> skip = {});
 
   WallSample sample(const Vec3& p) const;
 

@@ -182,6 +182,11 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
   return p;
 }
 
+bool Choreography::sealed(double t, int branch) const {
+  constexpr double kShut = 0.995;  // share of full closure that leaves no more than the closed gap
+  return track(branch == 1 ? "velum" : "arytenoid", t - def_.bpm_s) > kShut;
+}
+
 CarrierPoses Choreography::carriers(double t) const {
   const double tau = t - def_.bpm_s;
   CarrierPoses c;

@@ -22,6 +22,8 @@ class Choreography {
   const SwallowDef& def() const { return def_; }
   anatomy::LumenPose lumenPose(double t_s) const;
   CarrierPoses carriers(double t_s) const;
+  /// Branch 1: velum against the wall; 2: laryngeal inlet shut lip to lip.
+  bool sealed(double t_s, int branch) const;
 
  private:
   double track(const char* name, double tau_s) const;

@@ -206,7 +206,9 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
 
   auto moving = setInMotion(*scene, *swallow, o.jobs);
   if (!moving) return std::unexpected(moving.error());
-  const bolus::WallMotion walls = moving->skin.wallMotion();
+  bolus::WallMotion walls = moving->skin.wallMotion();
+  const kinematics::Choreography choreography(*scene->lumen, *swallow);
+  walls.sealed = [&choreography](double t, int branch) { return choreography.sealed(t, branch); };
   std::optional<bolus::Solver> solver;
   if (o.hasBolus()) {
     auto started = startBolus(o, fluid, walls, o.jobs);
