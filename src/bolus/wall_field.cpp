@@ -47,7 +47,6 @@ NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> x,
   NearestPoint best;
   double best2 = INFINITY, bestDistance = INFINITY;
   for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
-    if (!skip.empty() && skip[k]) continue;
     const Triangle& t = triangles[k];
     const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
     // no point of abc is nearer than its corner a less the longer of its two edges there
