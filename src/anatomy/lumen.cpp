@@ -57,8 +57,8 @@ int Lumen::rowAt(double s_m) const {
 }
 
 double Lumen::valleculaShear(double at, double uAt) const {
-  // 12 mm deep cups either side of the median fold; clinical-reference 5 has 8-10 mm, weak.
-  return 12e-3 * plateau(at, 0.0975, 0.1030, 0.1040, 0.1085) *
+  // 10 mm deep cups either side of the median fold; clinical-reference 5 has 8-10 mm, weak.
+  return 10e-3 * plateau(at, 0.0970, 0.1025, 0.1035, 0.1075) *
          (0.75 + 0.25 * smoothstep(std::abs(uAt) / 0.3)) * (1 - smoothstep((std::abs(uAt) - 0.6) / 0.35));
 }
 
@@ -187,6 +187,12 @@ void Lumen::evaluatePort(const LumenPose&, LumenSheets& out) const {
 
 void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
   const int loop = inletHole_.loop(), nc = inletHole_.columnSpan(), nr = inletHole_.rowSpan();
+  const int middle = columns() / 2;
+  const double mouth_m = (out.m[index(inletHole_.lastRow, middle)] -
+                          out.m[index(inletHole_.firstRow, middle)]).norm();
+  const double restMouth_m = Vec2(def_.inletBackY(0) - def_.inletFrontY(0),
+                                  def_.inletBackZ(0) - def_.inletFrontZ(0)).norm();
+  const double mouth = std::min(1.0, mouth_m / restMouth_m);
   const auto section = [&](double d, double a, double b) {
     const Vec3 front(0, def_.inletFrontY(d), def_.inletFrontZ(d));
     const Vec3 back(0, def_.inletBackY(d), def_.inletBackZ(d));
@@ -194,7 +200,9 @@ void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
     const double shut = (1 - pose.inletOpen) * (1 - smoothstep((d - 0.45) / 0.15));
     const double glottis = (1 - pose.glottisOpen) * plateau(d, 0.47, 0.53, 0.57, 0.64);
     const double depth_m = (back - front).norm();
-    const double ap = std::max(def_.closedGap_m / depth_m, 1 - shut);
+    // Near its mouth the vestibule is as open as the mouth itself.
+    const double open = std::min(mouth, 1 - shut) + (1 - shut - std::min(mouth, 1 - shut)) * smoothstep(d / 0.35);
+    const double ap = std::max(def_.closedGap_m / depth_m, open);
     const double half = def_.inletHalfWidth(d);
     const double width = std::max(def_.closedGap_m / 2 / half, 1 - glottis);
     const Vec2 q = squareToDisc(2 * a - 1, b);

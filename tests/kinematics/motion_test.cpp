@@ -68,13 +68,16 @@ TEST_P(Motion, TongueKeepsItsVolumeAndWallsNeverCross) {
   const auto baked = kinematics::bake({}, adult().lumen, adult().soft, swallow(GetParam()), 34);
   ThreadPool pool(2);
   const auto& tongue = baked.sequence.structures.front();
+  double worst = 0;
   for (int k = 0; k < baked.sequence.frames(); ++k) {
     const double v = volume(tongue.frames[k], tongue.triangles);
     ASSERT_NEAR(v / adult().soft.tongueVolume_m3(), 1, 0.02) << "frame " << k;
     const auto hit = airway::maxInterpenetration(baked.skin[k], adult().lumen.skin().triangles, pool);
-    ASSERT_LE(hit.depth_m, 0.5e-3) << "frame " << k << ", vertex " << hit.vertex << ", s "
+    worst = std::max(worst, hit.depth_m);
+    EXPECT_LE(hit.depth_m, 0.5e-3) << "frame " << k << ", vertex " << hit.vertex << ", s "
                                    << adult().lumen.skin().s_m[hit.vertex] << ", u " << adult().lumen.skin().u[hit.vertex];
   }
+  RecordProperty("deepest_mm", fmt::format("{:.3f}", worst * 1e3));
 }
 
 // Room of the main lumen from the contact front to the end of the path.
@@ -98,7 +101,8 @@ TEST_P(Motion, TheHeldBolusAlwaysHasRoom) {
   for (double t = 0; t <= def.duration_s; t += 1.0 / 34) {
     const double tau = t - def.bpm_s;
     if (def.frontAmplitude > 0 && def.front_m(tau) > 0.12) break;  // tail is in the pharynx
-    const double room = room_m3(adult().lumen, motion.lumenPose(t), 0, 0.15);
+    // A shut UES adds nothing; an open one has the head of the bolus in it.
+    const double room = room_m3(adult().lumen, motion.lumenPose(t), 0, 0.184);
     ASSERT_GE(room, 1.1 * def.volume_m3) << "t = " << t;
   }
   const double held = room_m3(adult().lumen, motion.lumenPose(0), 0, 0.068);
