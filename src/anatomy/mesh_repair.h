@@ -37,6 +37,9 @@ struct SurfaceMap {
   double seamShift(std::span<const Vec3> corners) const;
 };
 
+/// Drops vertices that no triangle uses.
+void compact(SurfaceMap& map);
+
 /// Welds corners that coincide on frame 0 and proves that all other frames have the same vertices
 /// and faces: equal counts and indices, no shared edge torn, no scrambled order. Sheets that only
 /// touch on frame 0 and part later stay apart (reported).
