@@ -57,6 +57,12 @@ void PointGrid::build(std::span<const Vec3> points, std::span<const std::uint8_t
     if (taken(i)) order_[next[cell_[i]]++] = static_cast<int>(i);
 }
 
+int Neighbours::countWithin(std::span<const Vec3> points, const Vec3& p, double radius_m) const {
+  int count = 0;
+  grid_.around(p, [&](int j) { count += (points[j] - p).squaredNorm() < radius_m * radius_m; });
+  return count;
+}
+
 void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                        const Kernel& kernel, ThreadPool& pool) {
   const int n = static_cast<int>(points.size());

@@ -52,6 +52,9 @@ struct Neighbours {
   void build(std::span<const Vec3> points, std::span<const std::uint8_t> take, const Kernel& kernel,
              ThreadPool& pool);
 
+  /// How many of the points of the last build are nearer to p than radius (at most a support).
+  int countWithin(std::span<const Vec3> points, const Vec3& p, double radius_m) const;
+
  private:
   PointGrid grid_;
   std::vector<std::vector<int>> found_;

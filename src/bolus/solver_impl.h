@@ -36,6 +36,9 @@ struct Solver::Impl {
   int pushInside();
   void keepOutOfSlits(int i);
   void updateStates();
+  bool staysFilm(std::size_t i) const;
+  Vec3 filmVelocity_ms(int i) const;
+  void keepOnWall(int i);
   void updatePath(bool all);
   void sampleWalls();
   int clampSpeeds(double dt_s);
@@ -62,6 +65,7 @@ struct Solver::Impl {
 
   std::array<bool, 3> shutBefore{};   // [branch]
   std::vector<std::uint8_t> skipped;  // [triangle] of shut branches
+  double filmDrainage_s = 0;  // speed of a draining film per acceleration along the wall
   double time_s = 0;
   bool frozen = false;  // walls stand still (settling)
   double settlingViscosity_Pas = 0;

@@ -14,7 +14,20 @@ constexpr double kFluidCourant = 0.4;     // spacings per step at the fastest pa
 constexpr double kWallCourant = 0.05;     // spacings per step at the fastest wall, DESIGN 5
 constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contacts reach 0.9
 constexpr double kFilmGap = 0.3;          // spacings, DESIGN 5 (0.6 invents residue)
+constexpr double kFilmThickness = 0.1;    // spacings, assumed (0.05 to 0.3): how thick a film drains
+constexpr double kFilmReach = 0.45;       // spacings: just above a particle's rest distance
+constexpr double kTakeUpReach = 1.2;      // spacings, assumed (1 to 1.5)
+constexpr int kTakeUpCount = 3;           // fluid particles that near take a film up, assumed (2 to 5)
 constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
+
+// Nusselt (1916): mean speed of a film of thickness h down a wall is rho g h^2 / (3 eta); here per
+// unit of acceleration. The apparent viscosity is that of the film's own wall shear.
+double drainagePerAcceleration_s(const Fluid& fluid, double thickness_m, double acceleration_ms2) {
+  double eta = apparentViscosity_Pas(fluid, 1.0);
+  for (int k = 0; k < 20; ++k)
+    eta = apparentViscosity_Pas(fluid, fluid.density_kgm3 * acceleration_ms2 * thickness_m / eta);
+  return fluid.density_kgm3 * thickness_m * thickness_m / (3 * eta);
+}
 }  // namespace
 
 Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
@@ -24,7 +37,9 @@ Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
       kernel(d.kernel, supportPerSpacing(d.kernel) * d.spacing_m),
       table(kernel),
       field(table, d.spacing_m),
-      volume_m3(std::pow(d.spacing_m, 3) / kernel.latticeSum(d.spacing_m)) {}
+      volume_m3(std::pow(d.spacing_m, 3) / kernel.latticeSum(d.spacing_m)),
+      filmDrainage_s(drainagePerAcceleration_s(d.fluid, kFilmThickness * d.spacing_m,
+                                               d.gravity_ms2.norm())) {}
 
 void Solver::Impl::start(double t_s, std::vector<Vec3> places) {
   const std::size_t n = places.size();
@@ -84,6 +99,7 @@ int Solver::Impl::pushInside() {
       if (particles.state[i] != State::swallowed) {
         rescued += projectInside(field, def.spacing_m, particles.positions[i], contacts[i]);
         keepOutOfSlits(i);
+        keepOnWall(i);
       }
     return rescued;
   }));
@@ -104,14 +120,37 @@ void Solver::Impl::keepOutOfSlits(int i) {
   contacts[i] = std::move(before);
 }
 
-// Film by the width of the lumen alone, never by density.
+// Film by the width of the lumen alone, never by density. When the walls part again a film stays on
+// the nearer one and drains, until fluid comes by and takes it up.
 void Solver::Impl::updateStates() {
   for (std::size_t i = 0; i < active.size(); ++i) {
     State& s = particles.state[i];
     if (s != State::swallowed)
-      s = localGap_m(contacts[i]) < kFilmGap * def.spacing_m ? State::film : State::fluid;
+      s = localGap_m(contacts[i]) < kFilmGap * def.spacing_m || staysFilm(i) ? State::film
+                                                                             : State::fluid;
     active[i] = s == State::fluid;
   }
+}
+
+bool Solver::Impl::staysFilm(std::size_t i) const {
+  return particles.state[i] == State::film && !contacts[i].empty() &&
+         neighbours.countWithin(particles.positions, particles.positions[i],
+                                kTakeUpReach * def.spacing_m) < kTakeUpCount;
+}
+
+Vec3 Solver::Impl::filmVelocity_ms(int i) const {
+  const std::vector<Contact>& c = contacts[i];
+  if (localGap_m(c) < kFilmGap * def.spacing_m)  // held by two sheets
+    return (c[0].velocity + c[facingContact(c)].velocity) / 2;
+  const Vec3 along = def.gravity_ms2 - def.gravity_ms2.dot(c[0].inward) * c[0].inward;
+  return c[0].velocity + (frozen ? 0.0 : filmDrainage_s) * along;
+}
+
+void Solver::Impl::keepOnWall(int i) {
+  if (particles.state[i] != State::film || contacts[i].empty()) return;
+  const Contact& c = contacts[i][0];
+  const double farthest_m = kFilmReach * def.spacing_m;
+  if (c.distance_m > farthest_m) particles.positions[i] = c.point + farthest_m * c.inward;
 }
 
 void Solver::Impl::sampleWalls() {
@@ -215,11 +254,7 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
     if (particles.state[i] == State::swallowed) continue;
     const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
     carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
-    if (particles.state[i] == State::film) {  // rides on the two sheets that hold it
-      const int facing = facingContact(contacts[i]);
-      v[i] = facing < 0 ? contacts[i][0].velocity
-                        : Vec3((contacts[i][0].velocity + contacts[i][facing].velocity) / 2);
-    }
+    if (particles.state[i] == State::film) v[i] = filmVelocity_ms(static_cast<int>(i));
     clampVelocity(contacts[i], def.spacing_m, dt_s, v[i]);
     report.maxSpeed_ms = std::max(report.maxSpeed_ms, v[i].norm());
     particles.positions[i] += dt_s * v[i];

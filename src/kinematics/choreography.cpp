@@ -54,7 +54,7 @@ double Track::at(double tau) const {
 
 const std::vector<TrackKind>& trackKinds() {
   static const std::vector<TrackKind> kinds{
-      {"chute", true},           {"velum", false},           {"vocal_folds", false},
+      {"chute", true},           {"seal", false},            {"velum", false},           {"vocal_folds", false},
       {"hyoid_pre", true},       {"hyoid_superior", true},   {"hyoid_anterior", true},
       {"larynx_superior", true}, {"larynx_anterior", true},  {"arytenoid", false},
       {"epiglottis", false},     {"shortening", true},       {"ppw_bulge", true},
@@ -103,7 +103,11 @@ double Choreography::chamber(double s, double u, double tau) const {
                         plateau(s - shift, def_.grooveStart_m, def_.grooveStart_m + 8e-3,
                                 def_.grooveEnd_m - 8e-3, def_.grooveEnd_m);
   const double au = std::abs(u);
-  const double chute = track("chute", tau) * plateau(s, 0.040, 0.052, 0.084, 0.096) *
+  // The back of the tongue drops first; the seal against the velum then gives way from front to back.
+  const double chuteEnd = 0.067 + 0.029 * track("seal", tau);
+  const double chuteStart = def_.grooveEnd_m - 14e-3;  // overlaps the held bolus, no neck between
+  const double chute = track("chute", tau) *
+                       plateau(s, chuteStart, chuteStart + 12e-3, chuteEnd - 10e-3, chuteEnd) *
                        (1 - au * au * au);
   const double larynxForward =
       kLarynxForwardGap * track("larynx_anterior", tau) * plateau(s, 0.104, 0.12, 0.145, 0.153);
