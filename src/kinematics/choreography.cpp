@@ -7,7 +7,10 @@
 
 namespace swallowclip::kinematics {
 namespace {
-constexpr double kFrontRamp_m = 14e-3;       // length of the contact front's shoulder; assumed 10-20
+// Length of the contact front's shoulder: tongue against palate, then tongue base and constrictors
+// against each other; assumed 10-20 and 15-30.
+constexpr double kOralShoulder_m = 14e-3, kPharyngealShoulder_m = 16e-3;
+constexpr double kSidesLead_m = 10e-3;       // lateral walls shut ahead of the midline; assumed 5-15
 constexpr double kLarynxForwardGap = 1.0;    // share of anterior larynx travel that opens the lumen
 constexpr double kInvertedTip_m = 0.114;     // where the epiglottis meets the arytenoids; assumed
 constexpr double kArytenoidTilt_rad = 0.35;  // 20 degrees forward at closure; assumed 15-30
@@ -153,6 +156,10 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
     return std::clamp((sigmaM(s) - sigmaM(kAbove_m)) / (sigmaM(kBelow_m) - sigmaM(kAbove_m)), 0.0, 1.0);
   };
   const double frontAt = def_.frontAmplitude > 0 ? def_.front_m(tau) : -1.0;
+  const double inPharynx = smoothstep((frontAt - 0.085) / 0.02);
+  const double sides_m = kSidesLead_m * inPharynx;
+  const double shoulder_m = kOralShoulder_m + (kPharyngealShoulder_m - kOralShoulder_m) *
+                                                  inPharynx;
   const double bulge = track("ppw_bulge", tau);
   p.gap_m.resize(static_cast<std::size_t>(lumen_.rows()) * lumen_.columns());
   p.shear_m.assign(p.gap_m.size(), 0.0);
@@ -168,11 +175,11 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
     const bool folds = s > kAbove_m && s < kBelow_m;
     const double share = folds ? along(s) : 0;
     const double from = folds ? s + closure * (kAbove_m + share * (kBelow_m - kAbove_m) - s) : s;
-    const double open = smoothstep((from - frontAt) / kFrontRamp_m);
     const double back = release(from, tau);
     for (int c = 0; c < lumen_.columns(); ++c) {
       const double u = lumen_.u(c);
       const int i = lumen_.index(r, c);
+      const double open = smoothstep((from - frontAt - sides_m * u * u) / shoulder_m);
       const auto gap = [&](double at) {
         return open * chamber(at, u, tau) + (1 - open) * back * restPosture(at, u);
       };

@@ -42,7 +42,11 @@ render::CaptionText captionFor(const frame::History& h, const std::vector<EventM
   else
     c.title = h.meta.swallow;
   c.subtitle = h.meta.bolus == "none" ? "no bolus" : "bolus: " + h.meta.bolus;
-  for (const EventMark& m : marks) c.events.push_back({m.name, m.time_s});
+  for (const EventMark& m : marks) {
+    std::string words = m.name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    c.events.push_back({words, m.time_s});
+  }
   c.start_s = h.time_s.front();
   c.duration_s = h.time_s.back() - h.time_s.front();
   return c;

@@ -212,14 +212,22 @@ void addIntervals(const History& h, const ScoringRules& rules, EventReport& out)
   interval("oral_transit", tip_s ? tip_s : at("tongue_onset"), at("BPM"),
            tip_s ? "planned tip press to BPM" : "tongue onset to BPM (no tip press planned)");
 
-  const auto tail = firstFrame(shareBeyond(h.bolus, rules.uesEnd_m), 0,
-                               [&](double share) { return share >= rules.tailShare; });
+  // The tail is that of what this swallow carries through; what stays behind is residue.
+  const std::vector<double> past = shareBeyond(h.bolus, rules.uesEnd_m);
+  const auto uesc = at("UESC");
+  const double through = past.empty() ? 0.0 : past[uesc ? frameAt(h, *uesc) : h.frames() - 1];
+  std::optional<int> tail;
+  if (through >= rules.throughShare)
+    tail = firstFrame(past, 0, [&](double s) { return s >= rules.tailShare * through; });
   interval("pharyngeal_transit", at("BPM"), tail ? std::optional(h.time_s[*tail]) : std::nullopt,
-           fmt::format("BPM to the first frame with {:g} % of V0 past s = {:g} mm",
+           fmt::format("BPM to the first frame with {:g} % of what has passed s = {:g} mm by UESC "
+                       "past it",
                        rules.tailShare * 100, rules.uesEnd_m * 1e3));
   if (!tail)
     out.quantities.back().reason =
-        hasBolus(h) ? "the bolus tail never passes the UES" : "the history has no bolus";
+        hasBolus(h) ? fmt::format("less than {:g} % of the bolus passes the UES",
+                                  rules.throughShare * 100)
+                    : "the history has no bolus";
 }
 }  // namespace
 

@@ -16,7 +16,8 @@ struct ScoringRules {
 
   // Events (ref 1, 2, 3).
   double headShare = 0.02;       ///< bolus head: leading share of V0 (ref 3, comp. 2 and 6)
-  double tailShare = 0.98;       ///< bolus tail: share of V0 that has passed; mirror of the head
+  double tailShare = 0.98;       ///< bolus tail: share of what passes at all; mirror of the head
+  double throughShare = 0.5;     ///< least share of V0 that makes a transit; assumed 0.3-0.8
   double hyoidBurst_ms = 0.020;  ///< HYB (ref 3, comp. 6)
   double sealedRatio = 0.03;     ///< gap rule, sealed q (ref 3, shared rules)
   double sealed_m = 0.0003;      ///< gap rule, sealed g (ref 3, shared rules)
