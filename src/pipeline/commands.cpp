@@ -40,9 +40,12 @@ Result<void> publish(const RunOptions& o, const render::RenderPreset& preset, co
   const std::filesystem::path folder = clipFolder(o, h.meta);
   if (auto ready = prepareFolder(folder); !ready) return ready;
   const std::string stem = clipStem(h.meta);
+  // The side file says that its clips are whole: it goes first and comes back last.
+  const auto side = folder / (stem + ".json");
+  std::error_code ec;
+  std::filesystem::remove(side, ec);
   auto times = drawClips(o, preset, h, *metrics, folder, stem, progress);
   if (!times) return std::unexpected(times.error());
-  const auto side = folder / (stem + ".json");
   if (auto written = writeFile(side, scene::sideFileText(h, *metrics)); !written) return written;
   progress.note(fmt::format("{}: {}; simulation {:.1f} s, drawing {:.1f} s, encoding beside it {:.1f} s",
                             side.string(), verdict(h.meta, *metrics), simulation_s, times->drawing_s, times->encoding_s));

@@ -19,6 +19,15 @@ bool isFileWord(const std::string& word) {
          word != "none";
 }
 
+/// The nearest file word to any text, e.g. of a file that does not name its bolus.
+std::string wordOf(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'))) c = '-';
+  }
+  return text.substr(0, 40);
+}
+
 /// Newtonian, Carreau, power law and Herschel-Bulkley each take their own numbers and no others.
 bolus::Fluid readFluid(const JsonNode& node) {
   using bolus::RheologyModel;
@@ -69,7 +78,7 @@ BolusDef readBolus(const JsonNode& node, std::string name) {
 Result<BolusDef> loadBolusFile(const std::filesystem::path& path) {
   auto file = JsonFile::load(path);
   if (!file) return std::unexpected(file.error());
-  BolusDef def = readBolus(file->root(), file->root().text("name"));
+  BolusDef def = readBolus(file->root(), file->root().text("name", wordOf(path.stem().string())));
   if (auto done = file->finish(); !done) return std::unexpected(done.error());
   return def;
 }

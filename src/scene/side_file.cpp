@@ -4,6 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/digest.h"
+#include "core/error.h"
+
 namespace swallowclip::scene {
 namespace {
 using Json = nlohmann::json;
@@ -27,6 +30,15 @@ Json conservationJson(const scoring::Conservation& c) {
           {"max_density_error", number(c.maxDensityError)},
           {"film_fraction", number(c.filmFraction)}};
 }
+
+std::uint64_t digestOfAll(const frame::History& h) {
+  std::uint64_t all = 0;
+  for (int k = 0; k < h.frames(); ++k) {
+    const std::uint64_t one = h.digest(k);
+    all = stateDigest(&one, sizeof one, all);
+  }
+  return all;
+}
 }  // namespace
 
 std::string sideFileText(const frame::History& h, const scoring::Metrics& m) {
@@ -42,6 +54,7 @@ std::string sideFileText(const frame::History& h, const scoring::Metrics& m) {
   j["duration_s"] = number(h.frames() / h.meta.fps);
   j["version"] = h.meta.program;
   j["inputs_sha256"] = h.meta.inputsSha256;
+  j["state_digest"] = fmt::format("{:016x}", digestOfAll(h));
   j["particle_spacing_mm"] = number(h.meta.particleSpacing_m / kMetrePerMm);
   j["max_particle_speed_m_per_s"] = number(h.meta.maxSpeed_ms);
   j["density_error_share_above_10_percent"] = number(h.meta.shareAboveTenPercent);

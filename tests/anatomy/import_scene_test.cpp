@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "core/file.h"
+#include "reference.h"
 #include "scene/mapping_file.h"
 
 namespace swallowclip {
@@ -145,10 +146,7 @@ TEST_F(ImportScene, AScenesOwnMeshesCanBeImportedAgain) {
 
 // ---- real meshes: two adults outside the repository ----
 
-fs::path referenceFolder() {
-  const char* named = std::getenv("SWALLOWCLIP_REFERENCE_MESHES");
-  return named ? named : "/work/shared/reference-anatomy/meshes";
-}
+fs::path referenceFolder() { return test::referenceFolder() / "meshes"; }
 fs::path referenceMapping() {
   return fs::path(SWALLOWCLIP_SOURCE_DIR) / "tests/fixtures/reference_mapping.json";
 }

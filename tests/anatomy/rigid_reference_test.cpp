@@ -9,15 +9,13 @@
 
 #include "anatomy/anatomy_builder.h"
 #include "scene/anatomy_file.h"
+#include "reference.h"
 #include "scene/json_reader.h"
 
 namespace swallowclip::anatomy {
 namespace {
 
-std::filesystem::path referenceFolder() {
-  if (const char* set = std::getenv("SWALLOWCLIP_REFERENCE")) return set;
-  return SWALLOWCLIP_SOURCE_DIR "/../shared/reference-anatomy";
-}
+using test::referenceFolder;
 
 Anatomy adult() {
   auto def = scene::loadAnatomyDef(SWALLOWCLIP_SOURCE_DIR "/scenes/adult/anatomy.json");

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Real meshes, where a reference pack lies beside the repository: SWALLOWCLIP_REFERENCE_ANATOMY
-// names its folder. Skipped elsewhere; no file of it belongs in the repository.
+// Real meshes, where a reference pack lies beside the repository; skipped elsewhere.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "reference.h"
 #include "render/renderer.h"
 #include "shapes.h"
 
@@ -38,9 +37,9 @@ frame::StructureTrack readObj(const std::filesystem::path& file, const std::stri
 }
 
 TEST(ReferenceAnatomy, TongueSectionFillsItsArea) {
-  const char* folder = std::getenv("SWALLOWCLIP_REFERENCE_ANATOMY");
-  if (!folder) GTEST_SKIP() << "SWALLOWCLIP_REFERENCE_ANATOMY is not set";
-  const auto tongue = readObj(std::filesystem::path(folder) / "meshes/ql2_tongue.obj", "tongue");
+  const auto folder = swallowclip::test::referenceFolder();
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no folder " << folder;
+  const auto tongue = readObj(folder / "meshes/ql2_tongue.obj", "tongue");
   ASSERT_GT(tongue.triangles.size(), 100u);
   RenderPreset p = test::flatPreset(320, 240);
   p.views["side"].target_m = {0, -0.01, -0.035};

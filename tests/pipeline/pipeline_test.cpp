@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// The whole program on the first instants of a swallow.
+#include "run.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/simulation.h"
+
+namespace swallowclip::pipeline {
+namespace {
+class Pipeline : public test::Run {};
+
+TEST_F(Pipeline, OneAndTwoThreadsGiveTheSameState) {
+  shorten(0.5);
+  std::vector<std::uint64_t> digests;
+  for (int threads : {1, 2}) {
+    options.jobs = threads;
+    const auto history = simulateSwallow(options, 0, 30, notes);
+    ASSERT_TRUE(history) << history.error().text();
+    EXPECT_EQ(history->ledger.back().start, 621);  // 5 mL at 2 mm, thesis 4.3
+    EXPECT_EQ(history->ledger.back().fluid + history->ledger.back().film, 621);
+    EXPECT_EQ(history->ledger.back().escaped, 0);
+    digests.push_back(history->digest(history->frames() - 1));
+  }
+  EXPECT_EQ(digests[0], digests[1]);
+}
+
+TEST_F(Pipeline, TheSameCommandTwiceGivesTheSameBytes) {
+  shorten(0.5);
+  shrink();
+  options.bolus = "none";
+  options.views = {"si"};
+  std::vector<std::string> clips, sides;
+  for (int k = 0; k < 2; ++k) {
+    const auto done = render(options, notes);
+    ASSERT_TRUE(done) << done.error().text();
+    clips.push_back(readFile(options.out / "c04/c04-s0-none-si.mp4").value());
+    sides.push_back(readFile(options.out / "c04/c04-s0-none.json").value());
+  }
+  EXPECT_TRUE(clips[0] == clips[1]);
+  EXPECT_EQ(sides[0], sides[1]);
+  EXPECT_EQ(filesIn(options.out),
+            (std::vector<std::string>{"c04-s0-none-si.mp4", "c04-s0-none-si.png",
+                                      "c04-s0-none-si.vtt", "c04-s0-none.json"}));
+}
+
+TEST_F(Pipeline, AnInterruptedRenderLeavesNothingThatLooksFinished) {
+  shorten(0.5);
+  shrink();
+  options.bolus = "none";
+  ASSERT_TRUE(prepareFolder(options.out / "c04"));
+  ASSERT_TRUE(writeFile(options.out / "c04/c04-s0-none.json", "{\"of\": \"an earlier run\"}"));
+
+  struct StopWhenDrawing : test::Notes {
+    void stage(std::string_view name) override {
+      if (name.find("drawing") != name.npos) setInterrupted(true);
+    }
+  } stopping;
+  const auto done = render(options, stopping);
+  setInterrupted(false);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().text().find("interrupted"), std::string::npos);
+  EXPECT_TRUE(filesIn(options.out).empty()) << filesIn(options.out).front();
+}
+
+TEST_F(Pipeline, FolderThatIsAFileIsRefusedBeforeAnyWork) {
+  std::ofstream(folder / "occupied") << "x";
+  options.out = folder / "occupied/out";
+  const auto done = render(options, notes);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().text().find("occupied"), std::string::npos) << done.error().text();
+}
+
+TEST_F(Pipeline, ASetThatNamesNoTrackOffersTheNearestOne) {
+  options.sets = {{"velm", "onset_s", 0.4}};
+  const auto done = render(options, notes);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().text().find("velum"), std::string::npos) << done.error().text();
+}
+}  // namespace
+}  // namespace swallowclip::pipeline

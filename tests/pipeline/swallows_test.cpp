@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// The promise, for every component-4 swallow: its bolus is conserved, and it measures as itself.
+// Minutes long: ctest -L slow.
+#include <cmath>
+
+#include "pipeline/simulation.h"
+#include "run.h"
+#include "scoring/measure.h"
+
+namespace swallowclip::pipeline {
+namespace {
+struct Swallowed {
+  frame::History history;
+  scoring::Metrics metrics;
+  double value(const char* name) const {
+    const auto* q = metrics.quantity(name);
+    return q && q->value ? *q->value : std::nan("");
+  }
+};
+
+std::optional<Swallowed> swallow(RunOptions options, int score, const std::string& bolus) {
+  test::Notes notes;
+  options.bolus = bolus;
+  options.jobs = 2;
+  auto history = simulateSwallow(options, score, 30, notes);
+  EXPECT_TRUE(history) << history.error().text();
+  if (!history) return std::nullopt;
+  auto metrics = scoring::measure(*history);
+  EXPECT_TRUE(metrics) << metrics.error().text();
+  if (!metrics) return std::nullopt;
+  return Swallowed{std::move(*history), std::move(*metrics)};
+}
+
+class Component4 : public test::Run,
+                   public testing::WithParamInterface<std::tuple<int, const char*>> {};
+
+TEST_P(Component4, MeasuresAsItselfAndConservesTheBolus) {
+  const auto [score, bolus] = GetParam();
+  const auto run = swallow(options, score, bolus);
+  ASSERT_TRUE(run);
+  ASSERT_TRUE(run->metrics.scores.at(4));
+  EXPECT_EQ(*run->metrics.scores.at(4), score);
+  EXPECT_TRUE(run->metrics.labelConfirmed.value_or(false)) << run->metrics.labelReason;
+  if (std::string_view(bolus) == "none") return;
+
+  const frame::LedgerRow end = run->history.ledger.back();
+  EXPECT_EQ(end.start, end.fluid + end.film + end.swallowed);
+  EXPECT_EQ(end.escaped, 0);
+  for (auto region : run->history.bolus.region.back()) {
+    EXPECT_NE(region, frame::Region::larynx);
+    EXPECT_NE(region, frame::Region::nasopharynx);
+  }
+  EXPECT_LE(run->history.meta.meanDensityError, 0.01);
+  EXPECT_LE(run->history.meta.shareAboveTenPercent, 0.01);
+  EXPECT_LE(run->history.meta.maxSpeed_ms, 3);
+  if (score == 4) {
+    EXPECT_EQ(end.swallowed, 0);
+    return;
+  }
+  EXPECT_GE(end.swallowed, 0.95 * end.start);
+  if (score != 0) return;
+  EXPECT_GE(run->value("oral_transit"), 0.35);  // clinical-reference 2
+  EXPECT_LE(run->value("oral_transit"), 1.54);
+  EXPECT_GE(run->value("pharyngeal_transit"), 0.35);
+  EXPECT_LE(run->value("pharyngeal_transit"), 1.19);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scores, Component4,
+                         testing::Combine(testing::Range(0, 5),
+                                          testing::Values("thesis-honey", "thin", "none")),
+                         [](const auto& named) {
+                           std::string name = fmt::format("{}_{}", std::get<0>(named.param),
+                                                          std::get<1>(named.param));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+class Viscosity : public test::Run {};
+
+TEST_F(Viscosity, ThinLeavesTheMouthBeforeHoneyBeforeAThickerOne) {
+  const auto thick = folder / "thick.json";
+  std::ofstream(thick) << R"({"description": "2.5 Pa.s", "density_kgm3": 1000,
+                             "rheology": "newtonian", "viscosity_Pas": 2.5})";
+  double before = 0;
+  for (const std::string& bolus : {std::string("thin"), std::string("thesis-honey"), thick.string()}) {
+    const auto run = swallow(options, 0, bolus);
+    ASSERT_TRUE(run);
+    const double left_s = run->value("t50_past_ramus");
+    EXPECT_GT(left_s, before) << bolus;
+    before = left_s;
+  }
+}
+}  // namespace
+}  // namespace swallowclip::pipeline
