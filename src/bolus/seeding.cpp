@@ -24,14 +24,6 @@ bool withinRange(const WallMotion& m, const NearestPoint& at, const SeedRange& r
   return s >= range.sMin_m && s <= range.sMax_m;
 }
 
-// Inside by the nearest wall's side where it is near, by winding number elsewhere.
-bool inside(const WallMotion& m, const std::vector<Vec3>& x, const WallField& field, const Vec3& p,
-            double reach, std::vector<Contact>& contacts) {
-  field.contacts(p, reach, contacts);
-  if (!contacts.empty()) return contacts[0].distance_m > 0;
-  return windingNumber(p, x, m.triangles) > 0.5;
-}
-
 struct Box {
   Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
 };
@@ -72,11 +64,24 @@ Result<std::vector<Vec3>> seedPlaces(const WallMotion& m, const std::vector<Vec3
                                                 kShifts[shift >> 2 & 1]);
       const Eigen::Vector3i n = ((box.high - origin) / edge).array().ceil().max(0).cast<int>();
       std::vector<Vec3> places;
+      std::vector<std::uint8_t> within((n.x() + 1) * (n.y() + 1) * (n.z() + 1));
+      const int rowStep = n.x() + 1, layerStep = rowStep * (n.y() + 1);
+      int at = -1;
       for (int k = 0; k <= n.z(); ++k)
         for (int j = 0; j <= n.y(); ++j)
           for (int i = 0; i <= n.x(); ++i) {
             const Vec3 p = origin + edge * Vec3(i, j, k);
-            if (!inside(m, x, field, p, table.support_m(), contacts)) continue;
+            ++at;
+            field.contacts(p, table.support_m(), contacts);
+            // Beside a wall its side decides. No wall within a support: the same side as the place
+            // before, an edge away; the first place of all is counted.
+            if (!contacts.empty())
+              within[at] = contacts[0].distance_m > 0;
+            else if (at > 0)
+              within[at] = within[at - (i > 0 ? 1 : j > 0 ? rowStep : layerStep)];
+            else
+              within[at] = windingNumber(p, x, m.triangles) > 0.5;
+            if (!within[at]) continue;
             if (!contacts.empty() && contacts[0].distance_m < lattice.wallDistance * spacing)
               continue;
             if (withinRange(m, nearestPoint(p, x, m.triangles), range)) places.push_back(p);
