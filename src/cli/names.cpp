@@ -26,12 +26,22 @@ Result<void> checkViews(const RunOptions& options) {
   return {};
 }
 
+bool isScene(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "anatomy.json", error) || fs::exists(folder / "scene.json", error);
+}
+
 Result<void> checkScene(const RunOptions& options) {
   std::error_code error;
-  if (fs::is_directory(options.sceneFolder(), error)) return {};
+  if (isScene(options.sceneFolder())) return {};
+  if (fs::is_directory(options.sceneFolder(), error))
+    return usageError("--scene",
+                      fmt::format("{} holds neither an anatomy.json nor a scene.json",
+                                  options.sceneFolder().string()),
+                      "Name a folder that `import` has made, or one like scenes/adult.");
   std::vector<std::string> known;
   for (const auto& entry : fs::directory_iterator(options.scenesFolder(), error))
-    if (entry.is_directory(error)) known.push_back(entry.path().filename().string());
+    if (isScene(entry.path())) known.push_back(entry.path().filename().string());
   std::ranges::sort(known);
   const std::string near = nearestName(options.scene, known);
   return usageError("--scene", fmt::format("unknown scene \"{}\"", options.scene),
@@ -68,7 +78,7 @@ Result<void> checkNames(CommandBit command, const RunOptions& options) {
     if (auto found = checkReadable("--map", options.map, false); !found) return found;
   }
   for (const fs::path& file : options.files)
-    if (auto found = checkReadable("check", file, false); !found) return found;
+    if (auto found = checkReadable("check", file, true); !found) return found;
   return {};
 }
 }  // namespace swallowclip::cli

@@ -89,6 +89,7 @@ Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& pre
     if (!sink) return std::unexpected(sink.error());
     std::filesystem::path posterPath = clip;
     posterPath.replace_extension(".png");
+    Image posterImage;
     for (int k = 0; k < h.frames(); ++k) {
       if (interrupted()) return std::unexpected(interruptedError());
       const double t0 = now_s();
@@ -97,8 +98,7 @@ Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& pre
       if (!image) return std::unexpected(image.error());
       const double t1 = now_s();
       if (auto pushed = (*sink)->push(*image); !pushed) return std::unexpected(pushed.error());
-      if (k == poster)
-        if (auto written = video::writePng(*image, posterPath); !written) return std::unexpected(written.error());
+      if (k == poster) posterImage = std::move(*image);
       times.drawing_s += t1 - t0;
       times.encoding_s += now_s() - t1;
       progress.update(static_cast<double>(k + 1) / h.frames());
@@ -106,6 +106,7 @@ Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& pre
     const double t2 = now_s();
     if (auto done = (*sink)->finish(); !done) return std::unexpected(done.error());
     times.encoding_s += now_s() - t2;
+    if (auto written = video::writePng(posterImage, posterPath); !written) return std::unexpected(written.error());
     std::filesystem::path vtt = clip;
     vtt.replace_extension(".vtt");
     if (auto written = video::writeVtt(chapters, h.frames() / h.meta.fps, vtt); !written)

@@ -150,27 +150,41 @@ Result<void> list(const RunOptions& o, Progress& progress) {
   return {};
 }
 
-Result<void> check(const RunOptions& o, Progress& progress) {
-  // Presets and boluses are told by their keys, scene files by their name; the rest are swallows.
-  for (const std::filesystem::path& f : o.files) {
-    const std::string name = f.filename().string();
-    auto kind = scene::fileKind(f);
-    if (!kind) return std::unexpected(kind.error());
-    Result<void> ok;
-    const auto keep = [&](const auto& result) {
-      if (!result) ok = std::unexpected(result.error());
-    };
-    if (*kind != scene::FileKind::other) {
-      ok = scene::checkFile(f, *kind);
-    } else if (name == "lumen.json" || name == "soft.json" || name == "anatomy.json" || name == "scene.json") {
+namespace {
+// Presets and boluses are told by their keys, scene files by their name; the rest are swallows.
+Result<void> checkOne(const RunOptions& o, const std::filesystem::path& f) {
+  auto kind = scene::fileKind(f);
+  if (!kind) return std::unexpected(kind.error());
+  if (*kind != scene::FileKind::other) return scene::checkFile(f, *kind);
+  const auto verdict = [](const auto& result) {
+    return result ? Result<void>{} : std::unexpected(result.error());
+  };
+  for (const char* name : {"lumen.json", "soft.json", "anatomy.json", "scene.json"})
+    if (f.filename() == name) {
       RunOptions at = o;
       at.scene = std::filesystem::absolute(f).parent_path().string();
-      keep(loadScene(at));
-    } else {
-      keep(scene::loadSwallow(f));
+      return verdict(loadScene(at));
     }
-    if (!ok) return ok;
-    progress.print(f.string() + ": good\n");
+  return verdict(scene::loadSwallow(f));
+}
+}  // namespace
+
+Result<void> check(const RunOptions& o, Progress& progress) {
+  std::error_code ec;
+  for (const std::filesystem::path& given : o.files) {
+    std::vector<std::filesystem::path> files{given};
+    if (std::filesystem::is_directory(given, ec)) {
+      files.clear();
+      for (const auto& e : std::filesystem::recursive_directory_iterator(given, ec))
+        if (e.path().extension() == ".json") files.push_back(e.path());
+      std::sort(files.begin(), files.end());
+      if (files.empty())
+        return usageError(given.string(), "no .json file in this folder", "Name a scene folder or a file.");
+    }
+    for (const auto& f : files) {
+      if (auto ok = checkOne(o, f); !ok) return ok;
+      progress.print(f.string() + ": good\n");
+    }
   }
   return {};
 }

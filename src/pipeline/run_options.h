@@ -44,10 +44,13 @@ struct RunOptions {
   bool hasBolus() const { return bolus != "none"; }
   std::filesystem::path scenesFolder() const { return data / "scenes"; }
   std::filesystem::path presetsFolder() const { return data / "render_presets"; }
-  /// --scene as a folder: a name in scenes/, or a path when it holds a '/'.
+  /// --scene as a folder: a name in scenes/, else a path.
   std::filesystem::path sceneFolder() const {
-    return scene.find('/') == std::string::npos ? scenesFolder() / scene
-                                                : std::filesystem::path(scene);
+    std::error_code ec;
+    const std::filesystem::path named = scenesFolder() / scene;
+    const bool isPath = scene.find('/') != std::string::npos ||
+                        (!std::filesystem::exists(named, ec) && std::filesystem::exists(scene, ec));
+    return isPath ? std::filesystem::path(scene) : named;
   }
 };
 }  // namespace swallowclip::pipeline
