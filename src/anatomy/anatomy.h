@@ -24,7 +24,8 @@ struct Structure {
 
 struct Anatomy {
   std::vector<Structure> structures;
-  std::map<std::string, Vec3> landmarks;  ///< names of reference-anatomy/landmarks.json where shared
+  std::map<std::string, Vec3>
+      landmarks;  ///< names of reference-anatomy/landmarks.json where shared
 
   const Structure* find(const std::string& name) const {
     for (const Structure& s : structures)

@@ -8,12 +8,14 @@
 
 namespace swallowclip::anatomy {
 namespace {
-constexpr double kNormalSpan_m = 6e-3;   // half span of the midline's tangent; assumed, 4-8 mm
-constexpr double kClampWidth_m = 0.5e-3; // softness of velum-wall contact; assumed, 0.2-1 mm
-constexpr double kArchPower = 2.5;       // palate arch fitted to the shape of clinical-reference 5
+constexpr double kNormalSpan_m = 6e-3;    // half span of the midline's tangent; assumed, 4-8 mm
+constexpr double kClampWidth_m = 0.5e-3;  // softness of velum-wall contact; assumed, 0.2-1 mm
+constexpr double kArchPower = 2.5;        // palate arch fitted to the shape of clinical-reference 5
 constexpr double kPortHalfU = 0.5, kInletHalfU = 0.42;  // share of the width the openings take
 
-double archShape(double u) { return std::pow(std::abs(u), kArchPower); }
+double archShape(double u) {
+  return std::pow(std::abs(u), kArchPower);
+}
 
 // Maps the square (a, b) in [-1,1]^2 to the unit disc, so that a grid loop becomes a round tube.
 Vec2 squareToDisc(double a, double b) {
@@ -21,7 +23,9 @@ Vec2 squareToDisc(double a, double b) {
 }
 
 // d > 0 unchanged, d < 0 becomes a small positive number: C-infinity contact.
-double softPositive(double d) { return 0.5 * (d + std::sqrt(d * d + kClampWidth_m * kClampWidth_m)); }
+double softPositive(double d) {
+  return 0.5 * (d + std::sqrt(d * d + kClampWidth_m * kClampWidth_m));
+}
 }  // namespace
 
 std::array<int, 2> Lumen::Hole::at(int k) const {
@@ -59,7 +63,8 @@ int Lumen::rowAt(double s_m) const {
 double Lumen::valleculaShear(double at, double uAt) const {
   // 10 mm deep cups either side of the median fold; clinical-reference 5 has 8-10 mm, weak.
   return 10e-3 * plateau(at, 0.0970, 0.1025, 0.1035, 0.1075) *
-         (0.75 + 0.25 * smoothstep(std::abs(uAt) / 0.3)) * (1 - smoothstep((std::abs(uAt) - 0.6) / 0.35));
+         (0.75 + 0.25 * smoothstep(std::abs(uAt) / 0.3)) *
+         (1 - smoothstep((std::abs(uAt) - 0.6) / 0.35));
 }
 
 double Lumen::pyriformGap(double at, double uAt) const {
@@ -138,7 +143,8 @@ LumenSheets Lumen::evaluate(const LumenPose& pose) const {
       const double gap_m = std::max(pose.gap_m[i], def_.closedGap_m);
       Vec3 foot = fixedPoint(std::clamp(at, 0.0, def_.length_m), u(c), &nrm);
       // An open tongue does not copy the step from the hanging uvula to the wall behind it.
-      const double away = smoothstep((gap_m - 1e-3) / 5e-3) * plateau(at, 0.068, 0.078, 0.088, 0.100);
+      const double away =
+          smoothstep((gap_m - 1e-3) / 5e-3) * plateau(at, 0.068, 0.078, 0.088, 0.100);
       if (away > 0) {
         Vec3 mean = Vec3::Zero();
         for (int k = -4; k <= 4; ++k) mean += fixedPoint(at + k * 2.5e-3, u(c), nullptr) / 9;
@@ -188,10 +194,11 @@ void Lumen::evaluatePort(const LumenPose&, LumenSheets& out) const {
 void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
   const int loop = inletHole_.loop(), nc = inletHole_.columnSpan(), nr = inletHole_.rowSpan();
   const int middle = columns() / 2;
-  const double mouth_m = (out.m[index(inletHole_.lastRow, middle)] -
-                          out.m[index(inletHole_.firstRow, middle)]).norm();
-  const double restMouth_m = Vec2(def_.inletBackY(0) - def_.inletFrontY(0),
-                                  def_.inletBackZ(0) - def_.inletFrontZ(0)).norm();
+  const double mouth_m =
+      (out.m[index(inletHole_.lastRow, middle)] - out.m[index(inletHole_.firstRow, middle)]).norm();
+  const double restMouth_m =
+      Vec2(def_.inletBackY(0) - def_.inletFrontY(0), def_.inletBackZ(0) - def_.inletFrontZ(0))
+          .norm();
   const double mouth = std::min(1.0, mouth_m / restMouth_m);
   const auto section = [&](double d, double a, double b) {
     const Vec3 front(0, def_.inletFrontY(d), def_.inletFrontZ(d));
@@ -201,7 +208,8 @@ void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
     const double glottis = (1 - pose.glottisOpen) * plateau(d, 0.47, 0.53, 0.57, 0.64);
     const double depth_m = (back - front).norm();
     // Near its mouth the vestibule is as open as the mouth itself.
-    const double open = std::min(mouth, 1 - shut) + (1 - shut - std::min(mouth, 1 - shut)) * smoothstep(d / 0.35);
+    const double open =
+        std::min(mouth, 1 - shut) + (1 - shut - std::min(mouth, 1 - shut)) * smoothstep(d / 0.35);
     const double ap = std::max(def_.closedGap_m / depth_m, open);
     const double half = def_.inletHalfWidth(d);
     const double width = std::max(def_.closedGap_m / 2 / half, 1 - glottis);

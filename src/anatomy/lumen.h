@@ -20,12 +20,12 @@ namespace swallowclip::anatomy {
 
 /// Control curves over s (m). Lengths in metres.
 struct LumenDef {
-  Curve roofY, roofZ;              ///< midline of F, velum hanging (rest)
+  Curve roofY, roofZ;                ///< midline of F, velum hanging (rest)
   Curve raisedVelumY, raisedVelumZ;  ///< midline of the velum part of F, sealed against the wall
-  Curve halfWidth, arch;           ///< lateral half-width; how far F comes towards M at |u| = 1
-  Curve restGap;                   ///< midline gap of the neutral pose, every lumen open
+  Curve halfWidth, arch;             ///< lateral half-width; how far F comes towards M at |u| = 1
+  Curve restGap;                     ///< midline gap of the neutral pose, every lumen open
   Curve velumThickness;
-  Curve nasalWallY;                ///< posterior wall above the port, over z (m)
+  Curve nasalWallY;  ///< posterior wall above the port, over z (m)
   Curve inletFrontY, inletFrontZ, inletBackY, inletBackZ, inletHalfWidth;  ///< over depth 0..1
   double length_m = 0.205;
   double velumStart_m = 0.050, uvula_m = 0.082, wallStart_m = 0.086;  ///< port lies in between
@@ -41,19 +41,19 @@ struct LumenPose {
   double velumRaise = 0;         ///< 0 hanging .. 1 sealed
   std::vector<double> sigmaF_m;  ///< [row] where the tissue of row s lies along the rest path
   std::vector<double> sigmaM_m;
-  std::vector<double> bulge_m;   ///< [row] how far F has moved along n
-  std::vector<double> gap_m;     ///< [row * columns] full gap field
-  std::vector<double> shear_m;   ///< [row * columns] slip of M down the path (pocket floors)
+  std::vector<double> bulge_m;        ///< [row] how far F has moved along n
+  std::vector<double> gap_m;          ///< [row * columns] full gap field
+  std::vector<double> shear_m;        ///< [row * columns] slip of M down the path (pocket floors)
   Vec3 larynxShift_m = Vec3::Zero();  ///< displacement of the laryngeal frame
-  double inletOpen = 1;          ///< AP openness of the vestibule, 0 shut .. 1 rest
-  double glottisOpen = 1;        ///< lateral openness of the vocal folds
+  double inletOpen = 1;               ///< AP openness of the vestibule, 0 shut .. 1 rest
+  double glottisOpen = 1;             ///< lateral openness of the vocal folds
 };
 
 /// Vertex positions of all sheets for one pose.
 struct LumenSheets {
-  std::vector<Vec3> f, m, velumTop;      ///< [row * columns]; velumTop only on velum rows
-  std::vector<Vec3> fNormal;             ///< [row] n at F
-  std::vector<Vec3> nasal, inlet;        ///< [(depth-1) * loop] loops of the branches, then caps
+  std::vector<Vec3> f, m, velumTop;  ///< [row * columns]; velumTop only on velum rows
+  std::vector<Vec3> fNormal;         ///< [row] n at F
+  std::vector<Vec3> nasal, inlet;    ///< [(depth-1) * loop] loops of the branches, then caps
 };
 
 /// Which anatomical wall a skin vertex belongs to; same numbers as frame::Wall.

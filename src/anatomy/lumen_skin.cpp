@@ -50,7 +50,7 @@ void Lumen::buildSkin() {
     return r >= h.firstRow && r < h.lastRow && c >= h.firstColumn && c < h.lastColumn;
   };
   const auto wallOfF = [&](double at) {
-    return at < def_.velumStart_m ? WallId::palate
+    return at < def_.velumStart_m           ? WallId::palate
            : at <= s(port_.firstRow) + 1e-9 ? WallId::velum
            : at < def_.uesStart_m           ? WallId::posterior
                                             : WallId::esophagus;
@@ -72,7 +72,8 @@ void Lumen::buildSkin() {
   IndexGrid f(rows_, std::vector<int>(nc, -1)), m = f;
   for (int r = 0; r < rows_; ++r)
     for (int c = 0; c < nc; ++c) {
-      if (!insideHole(port_, r, c)) f[r][c] = addVertex(0, index(r, c), wallOfF(s(r)), 0, s(r), u(c));
+      if (!insideHole(port_, r, c))
+        f[r][c] = addVertex(0, index(r, c), wallOfF(s(r)), 0, s(r), u(c));
     }
   for (int r = 0; r < rows_; ++r)
     for (int c = 0; c < nc; ++c) {
@@ -84,7 +85,8 @@ void Lumen::buildSkin() {
   std::vector<Triangle>& t = skin_.triangles;
   for (int r = 0; r + 1 < rows_; ++r)
     for (int c = 0; c + 1 < nc; ++c) {
-      if (!quadInHole(port_, r, c)) quad(t, f[r][c], f[r][c + 1], f[r + 1][c], f[r + 1][c + 1], false);
+      if (!quadInHole(port_, r, c))
+        quad(t, f[r][c], f[r][c + 1], f[r + 1][c], f[r + 1][c + 1], false);
       if (!quadInHole(inletHole_, r, c))
         quad(t, m[r][c], m[r][c + 1], m[r + 1][c], m[r + 1][c + 1], true);
     }

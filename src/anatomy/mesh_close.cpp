@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Closing surfaces, by CGAL (its mesh processing is GPL).
-#include "anatomy/mesh_repair.h"
-
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
@@ -16,6 +14,8 @@
 #include <map>
 #include <set>
 #include <unordered_map>
+
+#include "anatomy/mesh_repair.h"
 
 namespace swallowclip::anatomy {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "anatomy/mesh_import.h"
-
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "anatomy/mesh_import.h"
 #include "core/file.h"
 
 namespace swallowclip::anatomy {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "anatomy/mesh_repair.h"
 
-
 #include <algorithm>
 #include <map>
 #include <numeric>

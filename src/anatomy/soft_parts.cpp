@@ -29,7 +29,8 @@ std::vector<Triangle> tubeTriangles(int stations, int ring, int top, bool flip) 
     const auto cap = [&](int a, int b, int c) { i == 0 ? add(a, c, b) : add(a, b, c); };
     int u = 0, l = 0;  // steps taken along the upper and the lower chain
     while (u < top - 1 || l < bottom - 1) {
-      const bool upper = l == bottom - 1 || (u < top - 1 && (u + 1) * (bottom - 1) <= (l + 1) * (top - 1));
+      const bool upper =
+          l == bottom - 1 || (u < top - 1 && (u + 1) * (bottom - 1) <= (l + 1) * (top - 1));
       const int a = at(i, u), b = at(i, ring - 1 - l);
       if (upper) {
         cap(a, at(i, u + 1), b);
@@ -55,11 +56,20 @@ SoftParts::SoftParts(const Lumen& lumen, SoftDef def) : lumen_(lumen), def_(std:
     widthScale_ *= def_.tongueBreadth_m / 2 / half;
   }
   const int tongueRows = lumen_.rowAt(lumen_.def().tongueEnd_m) + 1;
-  structures_.push_back({"tongue", "muscle", false, Carrier::skull, false,
-                         {tongue(rest, still, 0), tubeTriangles(tongueRows, nc + kUnderside, nc, false)}});
+  structures_.push_back(
+      {"tongue",
+       "muscle",
+       false,
+       Carrier::skull,
+       false,
+       {tongue(rest, still, 0), tubeTriangles(tongueRows, nc + kUnderside, nc, false)}});
   tongueVolume_m3_ = volume(structures_.back().mesh);
   const int velumRows = lumen_.port().firstRow - lumen_.rowAt(lumen_.def().velumStart_m) + 1;
-  structures_.push_back({"soft_palate", "mucosa", false, Carrier::skull, false,
+  structures_.push_back({"soft_palate",
+                         "mucosa",
+                         false,
+                         Carrier::skull,
+                         false,
                          {velum(rest), tubeTriangles(velumRows, 2 * nc, nc, true)}});
   addShell("pharyngeal_wall", "muscle", def_.wallThickness_m, WallId::posterior);
   addShell("larynx_mucosa", "mucosa", def_.mucosaThickness_m, WallId::larynx);

@@ -10,11 +10,11 @@ namespace swallowclip::anatomy {
 
 /// Control curves of the tongue's underside over s (m), metres.
 struct SoftDef {
-  Curve tongueFloorY, tongueFloorZ;  ///< midline of the underside
-  Curve tongueHalfWidth;             ///< widest half-breadth of a station
-  double tongueBreadth_m = 51.9e-3;  ///< Hopkin 1967 in the thesis; the model's scale
-  double wallThickness_m = 3e-3;     ///< assumed, 2-4 mm
-  double mucosaThickness_m = 1.5e-3; ///< assumed, 1-3 mm
+  Curve tongueFloorY, tongueFloorZ;   ///< midline of the underside
+  Curve tongueHalfWidth;              ///< widest half-breadth of a station
+  double tongueBreadth_m = 51.9e-3;   ///< Hopkin 1967 in the thesis; the model's scale
+  double wallThickness_m = 3e-3;      ///< assumed, 2-4 mm
+  double mucosaThickness_m = 1.5e-3;  ///< assumed, 1-3 mm
 };
 
 struct SoftPose {

@@ -58,14 +58,14 @@ struct Solver::Impl {
   std::vector<std::vector<Contact>> contacts;
   std::vector<WallSample> walls;
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
-  std::vector<std::uint8_t> active;  // takes part in the pressure solve
+  std::vector<std::uint8_t> active;            // takes part in the pressure solve
   Neighbours neighbours;
   Projection projection;
   Viscosity viscosity;
 
   std::array<bool, 3> shutBefore{};   // [branch]
   std::vector<std::uint8_t> skipped;  // [triangle] of shut branches
-  double filmDrainage_s = 0;  // speed of a draining film per acceleration along the wall
+  double filmDrainage_s = 0;          // speed of a draining film per acceleration along the wall
   double time_s = 0;
   bool frozen = false;  // walls stand still (settling)
   double settlingViscosity_Pas = 0;

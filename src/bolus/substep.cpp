@@ -14,10 +14,10 @@ constexpr double kFluidCourant = 0.4;     // spacings per step at the fastest pa
 constexpr double kWallCourant = 0.05;     // spacings per step at the fastest wall, DESIGN 5
 constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contacts reach 0.9
 constexpr double kFilmGap = 0.3;          // spacings, DESIGN 5 (0.6 invents residue)
-constexpr double kFilmThickness = 0.1;    // spacings, assumed (0.05 to 0.3): how thick a film drains
-constexpr double kFilmReach = 0.45;       // spacings: just above a particle's rest distance
-constexpr double kTakeUpReach = 1.2;      // spacings, assumed (1 to 1.5)
-constexpr int kTakeUpCount = 3;           // fluid particles that near take a film up, assumed (2 to 5)
+constexpr double kFilmThickness = 0.1;  // spacings, assumed (0.05 to 0.3): how thick a film drains
+constexpr double kFilmReach = 0.45;     // spacings: just above a particle's rest distance
+constexpr double kTakeUpReach = 1.2;    // spacings, assumed (1 to 1.5)
+constexpr int kTakeUpCount = 3;       // fluid particles that near take a film up, assumed (2 to 5)
 constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
 
 // Nusselt (1916): mean speed of a film of thickness h down a wall is rho g h^2 / (3 eta); here per
@@ -38,8 +38,8 @@ Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
       table(kernel),
       field(table, d.spacing_m),
       volume_m3(std::pow(d.spacing_m, 3) / kernel.latticeSum(d.spacing_m)),
-      filmDrainage_s(drainagePerAcceleration_s(d.fluid, kFilmThickness * d.spacing_m,
-                                               d.gravity_ms2.norm())) {}
+      filmDrainage_s(
+          drainagePerAcceleration_s(d.fluid, kFilmThickness * d.spacing_m, d.gravity_ms2.norm())) {}
 
 void Solver::Impl::start(double t_s, std::vector<Vec3> places) {
   const std::size_t n = places.size();
@@ -106,7 +106,8 @@ int Solver::Impl::pushInside() {
 }
 
 // A gap too narrow for particles counts as shut: walls may close on a particle (film), but none
-// flows in from a wider place. Instead it stays before the slit's mouth, moving with the wall there.
+// flows in from a wider place. Instead it stays before the slit's mouth, moving with the wall
+// there.
 void Solver::Impl::keepOutOfSlits(int i) {
   const double shut_m = kFilmGap * def.spacing_m;
   if (carried.empty() || particles.state[i] != State::fluid || localGap_m(contacts[i]) >= shut_m)

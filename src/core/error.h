@@ -47,13 +47,13 @@ std::string nearestName(std::string_view word, const std::vector<std::string>& k
                               const std::string& values);
 }  // namespace swallowclip
 
-#define SC_CHECK_OP(a, op, b)                                                             \
-  do {                                                                                    \
-    const auto& sc_a_ = (a);                                                              \
-    const auto& sc_b_ = (b);                                                              \
-    if (!(sc_a_ op sc_b_))                                                                \
-      ::swallowclip::checkFailed(__FILE__, __LINE__, #a " " #op " " #b,                   \
-                                 fmt::format("{} vs {}", sc_a_, sc_b_));                  \
+#define SC_CHECK_OP(a, op, b)                                            \
+  do {                                                                   \
+    const auto& sc_a_ = (a);                                             \
+    const auto& sc_b_ = (b);                                             \
+    if (!(sc_a_ op sc_b_))                                               \
+      ::swallowclip::checkFailed(__FILE__, __LINE__, #a " " #op " " #b,  \
+                                 fmt::format("{} vs {}", sc_a_, sc_b_)); \
   } while (0)
 #define CHECK_LT(a, b) SC_CHECK_OP(a, <, b)
 #define CHECK_LE(a, b) SC_CHECK_OP(a, <=, b)

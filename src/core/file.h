@@ -16,7 +16,8 @@ Result<std::string> readFile(const std::filesystem::path& path);
 std::filesystem::path asidePath(const std::filesystem::path& finalPath);
 
 /// Flushes `aside` to disk and renames it to `finalPath`.
-Result<void> publishFile(const std::filesystem::path& aside, const std::filesystem::path& finalPath);
+Result<void> publishFile(const std::filesystem::path& aside,
+                         const std::filesystem::path& finalPath);
 
 /// All of it: writes bytes aside and publishes them.
 Result<void> writeFile(const std::filesystem::path& finalPath, std::string_view bytes);

@@ -123,7 +123,9 @@ Result<int> exportHistory(const History& h, ExportFormat format, const fs::path&
   if (const std::string fault = h.validate(); !fault.empty())
     return failure(folder.string(), "nothing exported, the history is not sound: " + fault,
                    "Simulate again.");
-  const char* inner = format == ExportFormat::vtp ? "vtp" : format == ExportFormat::obj ? "obj" : "";
+  const char* inner = format == ExportFormat::vtp   ? "vtp"
+                      : format == ExportFormat::obj ? "obj"
+                                                    : "";
   if (auto ready = prepareFolder(*inner ? folder / inner : folder); !ready)
     return std::unexpected(ready.error());
   Files files;

@@ -85,9 +85,15 @@ void* newBuffer(std::size_t size, H5FD_file_image_op_t op, void* user) {
 void* copyBytes(void* to, const void* from, std::size_t size, H5FD_file_image_op_t, void*) {
   return std::memcpy(to, from, size);
 }
-herr_t keepBuffer(void*, H5FD_file_image_op_t, void*) { return 0; }
-void* sameUser(void* user) { return user; }
-herr_t keepUser(void*) { return 0; }
+herr_t keepBuffer(void*, H5FD_file_image_op_t, void*) {
+  return 0;
+}
+void* sameUser(void* user) {
+  return user;
+}
+herr_t keepUser(void*) {
+  return 0;
+}
 
 /// In memory; the newest format that HDF5 1.10 reads, because its metadata carry checksums.
 Handle memoryAccess(Buffer& buffer) {
@@ -112,7 +118,9 @@ Quiet::Quiet() : lock_(libraryMutex()) {
   H5PLset_loading_state(0);  // a file must not make us load filter plugins
 }
 
-Quiet::~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+Quiet::~Quiet() {
+  H5Eset_auto2(H5E_DEFAULT, function_, data_);
+}
 
 Writer::Writer() {
   const Handle access = memoryAccess(memory_);
@@ -139,10 +147,9 @@ void Writer::write(const std::string& path, const Shape& shape, const void* valu
   CHECK_EQ(totalBytes(shape, size), count * size);
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
   const Handle create = creation(H5P_DATASET_CREATE, shape, size);
-  const Handle set(H5Dcreate2(file_, path.c_str(), fileType(type), space, H5P_DEFAULT, create,
-                              H5P_DEFAULT));
-  if (!set.valid() ||
-      (count > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0))
+  const Handle set(
+      H5Dcreate2(file_, path.c_str(), fileType(type), space, H5P_DEFAULT, create, H5P_DEFAULT));
+  if (!set.valid() || (count > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0))
     fail(fmt::format("data set {} {} can't be stored", path, shapeText(shape)));
 }
 
@@ -151,8 +158,7 @@ void Writer::attribute(const std::string& owner, const std::string& name, hid_t 
   if (!fault_.empty()) return;
   const Handle object(H5Oopen(file_, owner.c_str(), H5P_DEFAULT));
   const Handle space(H5Screate(H5S_SCALAR));
-  const Handle made(
-      H5Acreate2(object, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT));
+  const Handle made(H5Acreate2(object, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT));
   if (!made.valid() || H5Awrite(made, type, value) < 0)
     fail(fmt::format("attribute {} of {} can't be stored", name, owner));
 }
@@ -181,14 +187,15 @@ std::expected<std::string, std::string> Writer::finish() {
   // format 3.0, section II.A, version 2 and 3: end-of-file address, 8 bytes at offset 28).
   constexpr std::size_t kEndAt = 28;
   std::uint64_t end = 0;
-  if (memory_.size() >= kEndAt + sizeof end)
-    std::memcpy(&end, memory_.data() + kEndAt, sizeof end);
+  if (memory_.size() >= kEndAt + sizeof end) std::memcpy(&end, memory_.data() + kEndAt, sizeof end);
   if (end == 0 || end > memory_.size()) fail("the file can't be completed in memory");
   if (!fault_.empty()) return std::unexpected(fault_);
   return std::string(reinterpret_cast<const char*>(memory_.data()), end);
 }
 
-Reader::Reader(const std::string& path) : path_(path) { openFile(); }
+Reader::Reader(const std::string& path) : path_(path) {
+  openFile();
+}
 
 void Reader::openFile() {
   namespace fs = std::filesystem;
@@ -206,8 +213,7 @@ void Reader::openFile() {
   H5Pset_file_locking(access, false, true);  // read-only shares often can't lock
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
   file_ = Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, access));
-  if (!file_.valid())
-    refuse("can't be opened: the file is truncated or damaged", kRemedy);
+  if (!file_.valid()) refuse("can't be opened: the file is truncated or damaged", kRemedy);
 }
 
 void Reader::fail(const std::string& place, const std::string& problem) {
@@ -273,8 +279,7 @@ void Reader::fill(const std::string& path, const Handle& set, hid_t type, void* 
 Handle Reader::openAttribute(const std::string& owner, const std::string& name, H5T_class_t kind) {
   const std::string place = owner + "@" + name;
   if (!fine()) return Handle();
-  if (!linked(owner) ||
-      H5Aexists_by_name(file_, owner.c_str(), name.c_str(), H5P_DEFAULT) <= 0) {
+  if (!linked(owner) || H5Aexists_by_name(file_, owner.c_str(), name.c_str(), H5P_DEFAULT) <= 0) {
     fail(place, "attribute is missing");
     return Handle();
   }

@@ -50,10 +50,22 @@ class Quiet {
 
 template <class T>
 hid_t memoryType();
-template <> inline hid_t memoryType<float>() { return H5T_NATIVE_FLOAT; }
-template <> inline hid_t memoryType<double>() { return H5T_NATIVE_DOUBLE; }
-template <> inline hid_t memoryType<std::int32_t>() { return H5T_NATIVE_INT32; }
-template <> inline hid_t memoryType<std::uint8_t>() { return H5T_NATIVE_UINT8; }
+template <>
+inline hid_t memoryType<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+inline hid_t memoryType<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+inline hid_t memoryType<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
+inline hid_t memoryType<std::uint8_t>() {
+  return H5T_NATIVE_UINT8;
+}
 
 /// Builds a file in memory: little-endian, chunked (along the first axis), shuffled, deflated and
 /// checksummed data sets without times, so that the same values give the same bytes. Nothing

@@ -51,8 +51,8 @@ struct Checker {
     for (std::size_t i = 0; fine() && i < list.size(); ++i)
       for (int v : list[i])
         if (v < 0 || static_cast<std::size_t>(v) >= vertices)
-          require(false, fmt::format("{}: triangle {} names vertex {}, 0 to {} expected", what, i, v,
-                                     static_cast<long long>(vertices) - 1));
+          require(false, fmt::format("{}: triangle {} names vertex {}, 0 to {} expected", what, i,
+                                     v, static_cast<long long>(vertices) - 1));
   }
   template <class E>
   void words(const std::string& what, const std::vector<E>& list, E last) {
@@ -75,9 +75,8 @@ struct Checker {
   }
   void perFrame(const std::string& what, const std::vector<std::vector<Vec3f>>& list,
                 std::size_t frames, std::size_t expected, bool isPosition) {
-    perFrame(what, list, frames, expected, [&](const std::string& place, const auto& row) {
-      vectors(place, row, isPosition);
-    });
+    perFrame(what, list, frames, expected,
+             [&](const std::string& place, const auto& row) { vectors(place, row, isPosition); });
   }
 };
 
@@ -86,11 +85,14 @@ void checkMeta(Checker& c, const History& h) {
   c.require(m.version == kHistoryVersion,
             fmt::format("meta version is {}, {} expected", m.version, kHistoryVersion));
   c.require(std::isfinite(m.fps) && m.fps > 0, "meta fps: a positive number expected");
-  for (const auto& [what, value] :
-       {std::pair{"cue_s", m.cue_s}, {"density_kgm3", m.density_kgm3},
-        {"viscosity_Pas", m.viscosity_Pas}, {"particleSpacing_m", m.particleSpacing_m},
-        {"meanDensityError", m.meanDensityError}, {"maxDensityError", m.maxDensityError},
-        {"shareAboveTenPercent", m.shareAboveTenPercent}, {"maxSpeed_ms", m.maxSpeed_ms}})
+  for (const auto& [what, value] : {std::pair{"cue_s", m.cue_s},
+                                    {"density_kgm3", m.density_kgm3},
+                                    {"viscosity_Pas", m.viscosity_Pas},
+                                    {"particleSpacing_m", m.particleSpacing_m},
+                                    {"meanDensityError", m.meanDensityError},
+                                    {"maxDensityError", m.maxDensityError},
+                                    {"shareAboveTenPercent", m.shareAboveTenPercent},
+                                    {"maxSpeed_ms", m.maxSpeed_ms}})
     c.finite(fmt::format("meta {}", what), value);
   for (double cue : m.cues_s) c.finite("meta cues_s", cue);
   c.require(h.frames() > 0, "time_s: at least one frame expected");
@@ -108,7 +110,8 @@ void checkNames(Checker& c, const std::string& what, const std::string& word,
   bool plain = !word.empty() && word.size() <= kLongest && word[0] != '.' && word[0] != ' ';
   for (unsigned char ch : word)
     if (ch < 0x20 || ch == 0x7f || ch == '/' || ch == '\\') plain = false;
-  c.require(plain, fmt::format("{} name \"{}\": a plain word without slashes expected", what, word));
+  c.require(plain,
+            fmt::format("{} name \"{}\": a plain word without slashes expected", what, word));
   c.require(seen.insert(word).second, fmt::format("{} name \"{}\" is used twice", what, word));
 }
 
@@ -170,10 +173,9 @@ void checkBolus(Checker& c, const History& h) {
              [&](const std::string& place, const auto& row) {
                c.words(place, row, ParticleState::swallowed);
              });
-  c.perFrame("bolus region", b.region, frames, particles,
-             [&](const std::string& place, const auto& row) {
-               c.words(place, row, Region::swallowed);
-             });
+  c.perFrame(
+      "bolus region", b.region, frames, particles,
+      [&](const std::string& place, const auto& row) { c.words(place, row, Region::swallowed); });
   if (!h.ledger.empty()) c.count("ledger", h.ledger.size(), h.time_s.size());
 }
 
@@ -188,13 +190,20 @@ std::uint64_t addDigest(std::uint64_t seed, const std::vector<std::vector<T>>& l
 
 const char* name(Region region) {
   switch (region) {
-    case Region::oral: return "oral";
-    case Region::oropharynx: return "oropharynx";
-    case Region::nasopharynx: return "nasopharynx";
-    case Region::hypopharynx: return "hypopharynx";
-    case Region::larynx: return "larynx";
-    case Region::esophagus: return "esophagus";
-    case Region::swallowed: return "swallowed";
+    case Region::oral:
+      return "oral";
+    case Region::oropharynx:
+      return "oropharynx";
+    case Region::nasopharynx:
+      return "nasopharynx";
+    case Region::hypopharynx:
+      return "hypopharynx";
+    case Region::larynx:
+      return "larynx";
+    case Region::esophagus:
+      return "esophagus";
+    case Region::swallowed:
+      return "swallowed";
   }
   return "unknown";
 }

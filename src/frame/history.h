@@ -28,12 +28,12 @@ const char* name(Region region);
 
 /// Which side of the lumen a skin vertex belongs to.
 enum class Wall : std::uint8_t {
-  palate = 0,     ///< hard palate (maxilla)
-  velum,          ///< soft palate, both faces
-  posterior,      ///< pharyngeal wall, posterior and lateral
+  palate = 0,  ///< hard palate (maxilla)
+  velum,       ///< soft palate, both faces
+  posterior,   ///< pharyngeal wall, posterior and lateral
   tongue,
-  larynx,         ///< epiglottis, aryepiglottic folds, vestibule, post-cricoid
-  esophagus,      ///< UES and below
+  larynx,     ///< epiglottis, aryepiglottic folds, vestibule, post-cricoid
+  esophagus,  ///< UES and below
 };
 
 /// One anatomical structure. Rigid: `poses[frame]` on `rest`; soft: `positions[frame][vertex]`.
@@ -94,11 +94,11 @@ struct Meta {
   int component = 0, score = -1;  ///< what the clip is meant to show; 0/-1 when nothing
   double fps = 30;
   double cue_s = 0;
-  std::vector<double> cues_s;     ///< all cues, the first one first
+  std::vector<double> cues_s;  ///< all cues, the first one first
   double density_kgm3 = 0, viscosity_Pas = 0;
   double particleSpacing_m = 0;
   double meanDensityError = 0, maxDensityError = 0;  ///< over all particles and steps, film apart
-  double shareAboveTenPercent = 0;  ///< particle-steps with density error > 10 %
+  double shareAboveTenPercent = 0;                   ///< particle-steps with density error > 10 %
   double maxSpeed_ms = 0;
 };
 

@@ -92,8 +92,8 @@ void readStructures(h5::Reader& r, History& h, hsize_t frames) {
       std::vector<double> p;
       r.data(group + "/pose", {frames, 7}, p);
       for (std::size_t k = 0; k + 7 <= p.size(); k += 7)
-        s.poses.push_back({Quat(p[k], p[k + 1], p[k + 2], p[k + 3]),
-                           Vec3(p[k + 4], p[k + 5], p[k + 6])});
+        s.poses.push_back(
+            {Quat(p[k], p[k + 1], p[k + 2], p[k + 3]), Vec3(p[k + 4], p[k + 5], p[k + 6])});
     } else {
       readRows<Vec3f, float>(r, group + "/positions", {frames, s.rest.size(), 3}, s.positions);
     }

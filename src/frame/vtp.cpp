@@ -39,15 +39,18 @@ class Piece {
  public:
   Piece(std::size_t points, std::size_t vertices, std::size_t triangles, double time_s,
         const std::string& names = {}) {
-    xml_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
-           "byte_order=\"LittleEndian\" header_type=\"UInt32\">\n<PolyData>\n<FieldData>\n";
+    xml_ =
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+        "byte_order=\"LittleEndian\" header_type=\"UInt32\">\n<PolyData>\n<FieldData>\n";
     xml_ += fmt::format(
         "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
-        "{:.9g}</DataArray>\n", time_s);
+        "{:.9g}</DataArray>\n",
+        time_s);
     if (!names.empty()) xml_ += names;
     xml_ += fmt::format(
         "</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
-        "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n", points, vertices, triangles);
+        "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n",
+        points, vertices, triangles);
   }
   void open(const std::string& tag) { xml_ += "<" + tag + ">\n"; }
   void shut(const std::string& tag) { xml_ += "</" + tag + ">\n"; }
@@ -90,8 +93,10 @@ class Piece {
     const auto size = static_cast<std::uint32_t>(bytes);
     std::memcpy(block.data(), &size, sizeof size);
     if (bytes > 0) std::memcpy(block.data() + sizeof size, data, bytes);
-    xml_ += fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" "
-                        "format=\"binary\">", type, name, components);
+    xml_ += fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" "
+        "format=\"binary\">",
+        type, name, components);
     xml_ += base64(block.data(), block.size()) + "</DataArray>\n";
   }
   std::string xml_;
@@ -104,8 +109,10 @@ std::string nameField(const std::vector<StructureTrack>& structures) {
     for (unsigned char c : s.name) codes += fmt::format("{} ", c);
     codes += "0 ";
   }
-  return fmt::format("<Array type=\"String\" Name=\"names\" NumberOfTuples=\"{}\" "
-                     "format=\"ascii\">{}</Array>\n", structures.size(), codes);
+  return fmt::format(
+      "<Array type=\"String\" Name=\"names\" NumberOfTuples=\"{}\" "
+      "format=\"ascii\">{}</Array>\n",
+      structures.size(), codes);
 }
 }  // namespace
 

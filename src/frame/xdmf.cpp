@@ -11,11 +11,16 @@ namespace {
 std::string escaped(const std::string& text) {
   std::string safe;
   for (char c : text) {
-    if (c == '&') safe += "&amp;";
-    else if (c == '<') safe += "&lt;";
-    else if (c == '>') safe += "&gt;";
-    else if (c == '"') safe += "&quot;";
-    else safe += c;
+    if (c == '&')
+      safe += "&amp;";
+    else if (c == '<')
+      safe += "&lt;";
+    else if (c == '>')
+      safe += "&gt;";
+    else if (c == '"')
+      safe += "&quot;";
+    else
+      safe += c;
   }
   return safe;
 }
@@ -38,11 +43,13 @@ class Text {
              const std::string& path) {
     if (columns == 1) {
       add("<DataItem ItemType=\"HyperSlab\" Dimensions=\"1 {}\"><DataItem Format=\"XML\" "
-          "Dimensions=\"3 2\">{} 0 1 1 1 {}</DataItem>", n, frame, n);
+          "Dimensions=\"3 2\">{} 0 1 1 1 {}</DataItem>",
+          n, frame, n);
       whole(type, fmt::format("{} {}", frames, n), path);
     } else {
       add("<DataItem ItemType=\"HyperSlab\" Dimensions=\"1 {} {}\"><DataItem Format=\"XML\" "
-          "Dimensions=\"3 3\">{} 0 0 1 1 1 1 {} {}</DataItem>", n, columns, frame, n, columns);
+          "Dimensions=\"3 3\">{} 0 0 1 1 1 1 {} {}</DataItem>",
+          n, columns, frame, n, columns);
       whole(type, fmt::format("{} {} {}", frames, n, columns), path);
     }
     add("</DataItem>");
@@ -50,7 +57,8 @@ class Text {
   /// One column of an [n, 3] data set.
   void column(const std::string& type, std::size_t n, int which, const std::string& path) {
     add("<DataItem ItemType=\"HyperSlab\" Dimensions=\"{} 1\"><DataItem Format=\"XML\" "
-        "Dimensions=\"3 2\">0 {} 1 1 {} 1</DataItem>", n, which, n);
+        "Dimensions=\"3 2\">0 {} 1 1 {} 1</DataItem>",
+        n, which, n);
     whole(type, fmt::format("{} 3", n), path);
     add("</DataItem>");
   }
@@ -78,9 +86,10 @@ void rigidGeometry(Text& x, const StructureTrack& s, int frame, const std::strin
   const Mat3 r = pose.q.toRotationMatrix();
   x.add("<Geometry GeometryType=\"X_Y_Z\">");
   for (int k = 0; k < 3; ++k) {
-    x.add("<DataItem ItemType=\"Function\" Dimensions=\"{}\" Function=\"({:.9f} * $0) + "
-          "({:.9f} * $1) + ({:.9f} * $2) + {:.9f}\">",
-          s.rest.size(), r(k, 0), r(k, 1), r(k, 2), pose.t[k]);
+    x.add(
+        "<DataItem ItemType=\"Function\" Dimensions=\"{}\" Function=\"({:.9f} * $0) + "
+        "({:.9f} * $1) + ({:.9f} * $2) + {:.9f}\">",
+        s.rest.size(), r(k, 0), r(k, 1), r(k, 2), pose.t[k]);
     for (int column = 0; column < 3; ++column)
       x.column(kFloat, s.rest.size(), column, group + "/rest");
     x.add("</DataItem>");
@@ -131,8 +140,10 @@ void skinGrid(Text& x, const SkinTrack& s, int frames, int frame) {
 void bolusGrid(Text& x, const BolusTrack& b, int frames, int frame) {
   if (b.positions.empty() || b.positions[0].empty()) return;
   const std::size_t n = b.positions[0].size();
-  x.add("<Grid Name=\"bolus\" GridType=\"Uniform\">\n<Topology TopologyType=\"Polyvertex\" "
-        "NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n<Geometry GeometryType=\"XYZ\">", n);
+  x.add(
+      "<Grid Name=\"bolus\" GridType=\"Uniform\">\n<Topology TopologyType=\"Polyvertex\" "
+      "NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n<Geometry GeometryType=\"XYZ\">",
+      n);
   x.slice(kFloat, frames, frame, n, 3, "/bolus/positions");
   x.add("</Geometry>\n");
   const auto attribute = [&](const char* name, const std::string& type, int columns,
@@ -152,11 +163,14 @@ void bolusGrid(Text& x, const BolusTrack& b, int frames, int frame) {
 
 std::string xdmfText(const History& h, const std::string& h5Name) {
   Text x(h5Name);
-  x.add("<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
-        "<Grid Name=\"swallow\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  x.add(
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
+      "<Grid Name=\"swallow\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
   for (int f = 0; f < h.frames(); ++f) {
-    x.add("<Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
-          "<Time Value=\"{:.9g}\"/>\n", h.time_s[static_cast<std::size_t>(f)]);
+    x.add(
+        "<Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
+        "<Time Value=\"{:.9g}\"/>\n",
+        h.time_s[static_cast<std::size_t>(f)]);
     for (const StructureTrack& s : h.structures) structureGrid(x, s, h.frames(), f);
     skinGrid(x, h.skin, h.frames(), f);
     bolusGrid(x, h.bolus, h.frames(), f);

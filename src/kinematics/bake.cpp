@@ -16,7 +16,8 @@ struct Attachment {
   std::array<double, kNearest> weight{};
 };
 
-Attachment attach(const Vec3& p, const std::vector<Vec3>& skin, const std::vector<int>& candidates) {
+Attachment attach(const Vec3& p, const std::vector<Vec3>& skin,
+                  const std::vector<int>& candidates) {
   std::vector<std::pair<double, int>> near;
   for (int v : candidates) near.push_back({(skin[v] - p).squaredNorm(), v});
   std::partial_sort(near.begin(), near.begin() + kNearest, near.end());
@@ -39,13 +40,20 @@ Vec3 follow(const Attachment& a, const std::vector<Vec3>& rest, const std::vecto
 
 Pose carrierPose(anatomy::Carrier c, const CarrierPoses& p) {
   switch (c) {
-    case anatomy::Carrier::mandible: return p.mandible;
-    case anatomy::Carrier::hyoid: return p.hyoid;
-    case anatomy::Carrier::thyroid: return p.thyroid;
-    case anatomy::Carrier::cricoid: return p.cricoid;
-    case anatomy::Carrier::arytenoidL: return p.arytenoidL;
-    case anatomy::Carrier::arytenoidR: return p.arytenoidR;
-    default: return {};
+    case anatomy::Carrier::mandible:
+      return p.mandible;
+    case anatomy::Carrier::hyoid:
+      return p.hyoid;
+    case anatomy::Carrier::thyroid:
+      return p.thyroid;
+    case anatomy::Carrier::cricoid:
+      return p.cricoid;
+    case anatomy::Carrier::arytenoidL:
+      return p.arytenoidL;
+    case anatomy::Carrier::arytenoidR:
+      return p.arytenoidR;
+    default:
+      return {};
   }
 }
 
@@ -56,8 +64,7 @@ anatomy::Carrier landmarkCarrier(const std::string& name) {
   if (starts("thyroid") || starts("laryngeal") || starts("vocal") || starts("anterior_commissure"))
     return Carrier::thyroid;
   if (starts("cricoid") || starts("UES")) return Carrier::cricoid;
-  if (starts("arytenoid"))
-    return name.back() == 'R' ? Carrier::arytenoidR : Carrier::arytenoidL;
+  if (starts("arytenoid")) return name.back() == 'R' ? Carrier::arytenoidR : Carrier::arytenoidL;
   if (starts("epiglottis") || starts("cuneiform")) return Carrier::epiglottis;
   if (starts("lower_") || starts("menton") || starts("pogonion") || starts("gonion"))
     return Carrier::mandible;
@@ -77,7 +84,8 @@ BakedMotion bake(const anatomy::Anatomy& rigidParts, const anatomy::Lumen& lumen
   const std::vector<Vec3> restSkin = lumen.skinPositions(restSheets);
   std::vector<int> mucosa;
   for (std::size_t v = 0; v < restSkin.size(); ++v)
-    if (lumen.skin().wall[v] == static_cast<int>(anatomy::WallId::larynx)) mucosa.push_back(static_cast<int>(v));
+    if (lumen.skin().wall[v] == static_cast<int>(anatomy::WallId::larynx))
+      mucosa.push_back(static_cast<int>(v));
 
   std::vector<std::vector<Attachment>> attachments(rigidParts.structures.size());
   for (const anatomy::Structure& s : soft.structures())
@@ -92,7 +100,8 @@ BakedMotion bake(const anatomy::Anatomy& rigidParts, const anatomy::Lumen& lumen
     if (follows)
       for (const Vec3& p : s.mesh.positions) attachments[i].push_back(attach(p, restSkin, mucosa));
   }
-  std::vector<std::pair<std::string, Vec3>> points(rigidParts.landmarks.begin(), rigidParts.landmarks.end());
+  std::vector<std::pair<std::string, Vec3>> points(rigidParts.landmarks.begin(),
+                                                   rigidParts.landmarks.end());
   std::vector<Attachment> pointAttachment(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     out.landmarkNames.push_back(points[i].first);
@@ -100,7 +109,8 @@ BakedMotion bake(const anatomy::Anatomy& rigidParts, const anatomy::Lumen& lumen
       pointAttachment[i] = attach(points[i].second, restSkin, mucosa);
   }
   const int mid = lumen.columns() / 2;
-  for (const char* name : {"tongue_tip", "tongue_base", "uvula_tip"}) out.landmarkNames.push_back(name);
+  for (const char* name : {"tongue_tip", "tongue_base", "uvula_tip"})
+    out.landmarkNames.push_back(name);
 
   for (int k = 0; k < frames; ++k) {
     const double t = k / rate_hz;
@@ -115,7 +125,8 @@ BakedMotion bake(const anatomy::Anatomy& rigidParts, const anatomy::Lumen& lumen
       const anatomy::Structure& s = rigidParts.structures[i];
       std::vector<Vec3> p = s.mesh.positions;
       if (s.carrier == Carrier::epiglottis) {
-        for (std::size_t v = 0; v < p.size(); ++v) p[v] += follow(attachments[i][v], restSkin, skin);
+        for (std::size_t v = 0; v < p.size(); ++v)
+          p[v] += follow(attachments[i][v], restSkin, skin);
       } else {
         const Pose pose = carrierPose(s.carrier, carriers);
         for (Vec3& v : p) v = pose.apply(v);

@@ -10,14 +10,14 @@ namespace {
 // Length of the contact front's shoulder: tongue against palate, then tongue base and constrictors
 // against each other; assumed 10-20 and 15-30.
 constexpr double kOralShoulder_m = 14e-3, kPharyngealShoulder_m = 16e-3;
-constexpr double kSidesLead_m = 10e-3;       // lateral walls shut ahead of the midline; assumed 5-15
-constexpr double kLarynxForwardGap = 1.0;    // share of anterior larynx travel that opens the lumen
-constexpr double kInvertedTip_m = 0.114;     // where the epiglottis meets the arytenoids; assumed
+constexpr double kSidesLead_m = 10e-3;     // lateral walls shut ahead of the midline; assumed 5-15
+constexpr double kLarynxForwardGap = 1.0;  // share of anterior larynx travel that opens the lumen
+constexpr double kInvertedTip_m = 0.114;   // where the epiglottis meets the arytenoids; assumed
 constexpr double kArytenoidTilt_rad = 0.35;  // 20 degrees forward at closure; assumed 15-30
 const Vec3 kCricoarytenoidJoint_m(0, 28e-3, -96e-3);  // assumed, of the default scene
 
-// Map of [0, end] onto itself: the given knots inside, the identity before the first one. Knots close
-// together below it keep the curve's bend from reaching back to the palate.
+// Map of [0, end] onto itself: the given knots inside, the identity before the first one. Knots
+// close together below it keep the curve's bend from reaching back to the palate.
 Curve identityExcept(const std::vector<std::array<double, 2>>& knots, double end) {
   std::vector<double> x{0}, y{0};
   for (double back : {0.010, 0.005}) {
@@ -56,12 +56,14 @@ double Track::at(double tau) const {
 }
 
 const std::vector<TrackKind>& trackKinds() {
-  static const std::vector<TrackKind> kinds{
-      {"chute", true},           {"seal", false},            {"velum", false},           {"vocal_folds", false},
-      {"hyoid_pre", true},       {"hyoid_superior", true},   {"hyoid_anterior", true},
-      {"larynx_superior", true}, {"larynx_anterior", true},  {"arytenoid", false},
-      {"epiglottis", false},     {"shortening", true},       {"ppw_bulge", true},
-      {"ues", true},             {"tongue_return", false},   {"pharynx_return", false}};
+  static const std::vector<TrackKind> kinds{{"chute", true},           {"seal", false},
+                                            {"velum", false},          {"vocal_folds", false},
+                                            {"hyoid_pre", true},       {"hyoid_superior", true},
+                                            {"hyoid_anterior", true},  {"larynx_superior", true},
+                                            {"larynx_anterior", true}, {"arytenoid", false},
+                                            {"epiglottis", false},     {"shortening", true},
+                                            {"ppw_bulge", true},       {"ues", true},
+                                            {"tongue_return", false},  {"pharynx_return", false}};
   return kinds;
 }
 
@@ -86,12 +88,16 @@ Choreography::Choreography(const anatomy::Lumen& lumen, SwallowDef def)
   grooveDepth_m_ = def_.roomFactor * def_.volume_m3 / footprint_m2;
 }
 
-double Choreography::track(const char* name, double tau) const { return def_.track(name).at(tau); }
+double Choreography::track(const char* name, double tau) const {
+  return def_.track(name).at(tau);
+}
 
 double Choreography::restPosture(double s, double u) const {
   // Tongue lies 2 mm under the palate, tongue base and hypopharynx stand open, UES shut; assumed.
-  static const Curve midline({0, 0.04, 0.07, 0.084, 0.094, 0.099, 0.1035, 0.108, 0.116, 0.126, 0.134, 0.142, 0.150, 0.186, 0.192, 0.205},
-                             {2e-3, 2e-3, 2e-3, 7e-3, 10e-3, 10.2e-3, 12.5e-3, 5.5e-3, 6.5e-3, 6e-3, 4e-3, 2e-3, 0, 0, 6e-3, 6e-3});
+  static const Curve midline({0, 0.04, 0.07, 0.084, 0.094, 0.099, 0.1035, 0.108, 0.116, 0.126,
+                              0.134, 0.142, 0.150, 0.186, 0.192, 0.205},
+                             {2e-3, 2e-3, 2e-3, 7e-3, 10e-3, 10.2e-3, 12.5e-3, 5.5e-3, 6.5e-3, 6e-3,
+                              4e-3, 2e-3, 0, 0, 6e-3, 6e-3});
   return midline(s) * (1 - u * u) + lumen_.pyriformGap(s, u);
 }
 
@@ -106,7 +112,8 @@ double Choreography::chamber(double s, double u, double tau) const {
                         plateau(s - shift, def_.grooveStart_m, def_.grooveStart_m + 8e-3,
                                 def_.grooveEnd_m - 8e-3, def_.grooveEnd_m);
   const double au = std::abs(u);
-  // The back of the tongue drops first; the seal against the velum then gives way from front to back.
+  // The back of the tongue drops first; the seal against the velum then gives way from front to
+  // back.
   const double chuteEnd = 0.067 + 0.029 * track("seal", tau);
   const double chuteStart = def_.grooveEnd_m - 14e-3;  // overlaps the held bolus, no neck between
   const double chute = track("chute", tau) *
@@ -114,7 +121,8 @@ double Choreography::chamber(double s, double u, double tau) const {
                        (1 - au * au * au);
   const double larynxForward =
       kLarynxForwardGap * track("larynx_anterior", tau) * plateau(s, 0.104, 0.12, 0.145, 0.153);
-  const double body = restPosture(s, u) * smoothstep((s - 0.072) / 0.012) + larynxForward * (1 - u * u);
+  const double body =
+      restPosture(s, u) * smoothstep((s - 0.072) / 0.012) + larynxForward * (1 - u * u);
   const double ues = track("ues", tau) * plateau(s, 0.143, 0.151, 0.184, 0.190) *
                      std::sqrt(std::max(0.0, 1 - u * u));
   return smoothMax({groove, chute, body, ues});
@@ -142,24 +150,27 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
   const double shut = tip + 2e-4;
   const double arytenoid = arytenoidFree + closure * (shut - arytenoidFree);
   const double end = d.length_m;
-  const Curve sigmaM = identityExcept(
-      {{0.099, 0.099}, {d.tongueEnd_m, d.tongueEnd_m}, {d.epiglottisTip_m, tip},
-       {d.arytenoid_m, std::max(arytenoid, shut)},
-       {d.uesStart_m, std::max(d.uesStart_m - up, shut + 5e-3)}, {0.185, 0.185 - 0.8 * up}}, end);
+  const Curve sigmaM = identityExcept({{0.099, 0.099},
+                                       {d.tongueEnd_m, d.tongueEnd_m},
+                                       {d.epiglottisTip_m, tip},
+                                       {d.arytenoid_m, std::max(arytenoid, shut)},
+                                       {d.uesStart_m, std::max(d.uesStart_m - up, shut + 5e-3)},
+                                       {0.185, 0.185 - 0.8 * up}},
+                                      end);
   const double lift = track("shortening", tau);
   const Curve sigmaF = identityExcept(
       {{0.090, 0.090}, {d.uesStart_m, d.uesStart_m - lift}, {0.185, 0.185 - 0.8 * lift}}, end);
-  // Over the shut inlet the lumen is one even channel from the tongue base to the post-cricoid wall:
-  // the folded tissue takes its gap from where it lies, not from what it is.
+  // Over the shut inlet the lumen is one even channel from the tongue base to the post-cricoid
+  // wall: the folded tissue takes its gap from where it lies, not from what it is.
   constexpr double kAbove_m = 0.100, kBelow_m = 0.142;
   const auto along = [&](double s) {
-    return std::clamp((sigmaM(s) - sigmaM(kAbove_m)) / (sigmaM(kBelow_m) - sigmaM(kAbove_m)), 0.0, 1.0);
+    return std::clamp((sigmaM(s) - sigmaM(kAbove_m)) / (sigmaM(kBelow_m) - sigmaM(kAbove_m)), 0.0,
+                      1.0);
   };
   const double frontAt = def_.frontAmplitude > 0 ? def_.front_m(tau) : -1.0;
   const double inPharynx = smoothstep((frontAt - 0.085) / 0.02);
   const double sides_m = kSidesLead_m * inPharynx;
-  const double shoulder_m = kOralShoulder_m + (kPharyngealShoulder_m - kOralShoulder_m) *
-                                                  inPharynx;
+  const double shoulder_m = kOralShoulder_m + (kPharyngealShoulder_m - kOralShoulder_m) * inPharynx;
   const double bulge = track("ppw_bulge", tau);
   p.gap_m.resize(static_cast<std::size_t>(lumen_.rows()) * lumen_.columns());
   p.shear_m.assign(p.gap_m.size(), 0.0);
@@ -170,8 +181,9 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
     const double s = lumen_.s(r);
     p.sigmaM_m.push_back(sigmaM(s));
     p.sigmaF_m.push_back(sigmaF(s));
-    p.bulge_m.push_back(bulge * plateau(s, frontAt - 0.03, frontAt - 0.005, frontAt + 0.005, frontAt + 0.03) *
-                        plateau(s, 0.088, 0.096, 0.14, 0.15));
+    p.bulge_m.push_back(
+        bulge * plateau(s, frontAt - 0.03, frontAt - 0.005, frontAt + 0.005, frontAt + 0.03) *
+        plateau(s, 0.088, 0.096, 0.14, 0.15));
     const bool folds = s > kAbove_m && s < kBelow_m;
     const double share = folds ? along(s) : 0;
     const double from = folds ? s + closure * (kAbove_m + share * (kBelow_m - kAbove_m) - s) : s;

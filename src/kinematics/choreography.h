@@ -39,9 +39,9 @@ class Choreography {
 /// Sequential meshes of the whole scene at rate_hz, landmarks included as tracks.
 struct BakedMotion {
   MeshSequence sequence;
-  std::vector<std::vector<Vec3>> skin;                        ///< [frame][skin vertex]
+  std::vector<std::vector<Vec3>> skin;  ///< [frame][skin vertex]
   std::vector<std::string> landmarkNames;
-  std::vector<std::vector<Vec3>> landmarks;                   ///< [frame][landmark]
+  std::vector<std::vector<Vec3>> landmarks;  ///< [frame][landmark]
 };
 BakedMotion bake(const anatomy::Anatomy& rigidParts, const anatomy::Lumen& lumen,
                  const anatomy::SoftParts& soft, const SwallowDef& swallow, double rate_hz);

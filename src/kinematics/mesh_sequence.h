@@ -32,8 +32,8 @@ struct MeshSequence {
 /// Carlson 1980): never overshoots its samples, so a closed gap stays closed between frames.
 /// Writes position and velocity of `count` packed scalars of frames f..; see mesh_sequence.cpp.
 struct HermiteWeights {
-  int frame = 0;    ///< interval [frame, frame+1]
-  double x = 0;     ///< 0..1 inside it
+  int frame = 0;  ///< interval [frame, frame+1]
+  double x = 0;   ///< 0..1 inside it
 };
 HermiteWeights locate(double t_s, double start_s, double rate_hz, int frames);
 

@@ -31,14 +31,17 @@ std::vector<EventMark> eventMarks(const frame::History& h, const scoring::Metric
     if (e.name == "cue" || e.name == "second cue") marks.push_back({e.name, e.time_s});
   for (const auto& e : m.events)
     if (e.time_s) marks.push_back({e.name, *e.time_s});
-  std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+  std::stable_sort(marks.begin(), marks.end(),
+                   [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
   return marks;
 }
 
 render::CaptionText captionFor(const frame::History& h, const std::vector<EventMark>& marks) {
   render::CaptionText c;
-  if (const Component* k = findComponent(h.meta.component); k && h.meta.score >= 0 && h.meta.score <= k->highestScore())
-    c.title = fmt::format("MBSImP component {}, score {}: {}", k->number, h.meta.score, k->scores[h.meta.score]);
+  if (const Component* k = findComponent(h.meta.component);
+      k && h.meta.score >= 0 && h.meta.score <= k->highestScore())
+    c.title = fmt::format("MBSImP component {}, score {}: {}", k->number, h.meta.score,
+                          k->scores[h.meta.score]);
   else
     c.title = h.meta.swallow;
   c.subtitle = h.meta.bolus == "none" ? "no bolus" : "bolus: " + h.meta.bolus;
@@ -55,13 +58,15 @@ render::CaptionText captionFor(const frame::History& h, const std::vector<EventM
 // The scored moment: tongue transport is judged at bolus passing mandible, else mid-clip.
 int posterFrame(const frame::History& h, const scoring::Metrics& m) {
   for (const char* name : {"BPM", "t_on"})
-    if (const auto* e = m.event(name); e && e->time_s && e->frame >= 0) return std::min(e->frame, h.frames() - 1);
+    if (const auto* e = m.event(name); e && e->time_s && e->frame >= 0)
+      return std::min(e->frame, h.frames() - 1);
   return h.frames() / 2;
 }
 }  // namespace
 
 std::string clipStem(const frame::Meta& m) {
-  if (m.component > 0 && m.score >= 0) return fmt::format("c{:02}-s{}-{}", m.component, m.score, m.bolus);
+  if (m.component > 0 && m.score >= 0)
+    return fmt::format("c{:02}-s{}-{}", m.component, m.score, m.bolus);
   return fmt::format("{}-{}", m.swallow, m.bolus);
 }
 
@@ -106,7 +111,8 @@ Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& pre
     const double t2 = now_s();
     if (auto done = (*sink)->finish(); !done) return std::unexpected(done.error());
     times.encoding_s += now_s() - t2;
-    if (auto written = video::writePng(posterImage, posterPath); !written) return std::unexpected(written.error());
+    if (auto written = video::writePng(posterImage, posterPath); !written)
+      return std::unexpected(written.error());
     std::filesystem::path vtt = clip;
     vtt.replace_extension(".vtt");
     if (auto written = video::writeVtt(chapters, h.frames() / h.meta.fps, vtt); !written)

@@ -33,8 +33,8 @@ std::string verdict(const frame::Meta& m, const scoring::Metrics& metrics) {
                                  : "NOT confirmed: " + metrics.labelReason;
 }
 
-Result<void> publish(const RunOptions& o, const render::RenderPreset& preset, const frame::History& h,
-                     double simulation_s, Progress& progress) {
+Result<void> publish(const RunOptions& o, const render::RenderPreset& preset,
+                     const frame::History& h, double simulation_s, Progress& progress) {
   auto metrics = scoring::measure(h);
   if (!metrics) return std::unexpected(metrics.error());
   const std::filesystem::path folder = clipFolder(o, h.meta);
@@ -47,8 +47,9 @@ Result<void> publish(const RunOptions& o, const render::RenderPreset& preset, co
   auto times = drawClips(o, preset, h, *metrics, folder, stem, progress);
   if (!times) return std::unexpected(times.error());
   if (auto written = writeFile(side, scene::sideFileText(h, *metrics)); !written) return written;
-  progress.note(fmt::format("{}: {}; simulation {:.1f} s, drawing {:.1f} s, encoding beside it {:.1f} s",
-                            side.string(), verdict(h.meta, *metrics), simulation_s, times->drawing_s, times->encoding_s));
+  progress.note(fmt::format(
+      "{}: {}; simulation {:.1f} s, drawing {:.1f} s, encoding beside it {:.1f} s", side.string(),
+      verdict(h.meta, *metrics), simulation_s, times->drawing_s, times->encoding_s));
   return {};
 }
 
@@ -62,7 +63,9 @@ Result<void> render(const RunOptions& o, Progress& progress) {
   if (!preset) return std::unexpected(preset.error());
   if (auto ready = prepareFolder(o.out); !ready) return ready;
   for (int score : wantedScores(o)) {
-    progress.stage(score >= 0 ? fmt::format("component {}, score {}: simulating", o.component, score) : "simulating");
+    progress.stage(score >= 0
+                       ? fmt::format("component {}, score {}: simulating", o.component, score)
+                       : "simulating");
     const double start = now_s();
     auto history = simulateSwallow(o, score, preset->fps, progress);
     if (!history) return std::unexpected(history.error());
@@ -75,7 +78,9 @@ Result<void> simulate(const RunOptions& o, Progress& progress) {
   auto preset = scene::loadPreset(o.presetsFolder(), o.preset);
   if (!preset) return std::unexpected(preset.error());
   const std::vector<int> scores = wantedScores(o);
-  if (scores.size() != 1) return usageError("--score", "simulate writes one history, so it takes one score", "Run it once per score.");
+  if (scores.size() != 1)
+    return usageError("--score", "simulate writes one history, so it takes one score",
+                      "Run it once per score.");
   progress.stage("simulating");
   auto history = simulateSwallow(o, scores.front(), preset->fps, progress);
   if (!history) return std::unexpected(history.error());
@@ -125,12 +130,14 @@ Result<void> list(const RunOptions& o, Progress& progress) {
     for (const Component& c : components()) {
       text += fmt::format("{:2}  {} (0-{})\n", c.number, c.title, c.highestScore());
       if (o.topic == "scores")
-        for (int s = 0; s <= c.highestScore(); ++s) text += fmt::format("      {}  {}\n", s, c.scores[s]);
+        for (int s = 0; s <= c.highestScore(); ++s)
+          text += fmt::format("      {}  {}\n", s, c.scores[s]);
     }
   } else if (o.topic == "views") {
     auto preset = scene::loadPreset(o.presetsFolder(), o.preset);
     if (!preset) return std::unexpected(preset.error());
-    for (const auto& [name, view] : preset->views) text += fmt::format("{:10} {}\n", name, view.captionTitle);
+    for (const auto& [name, view] : preset->views)
+      text += fmt::format("{:10} {}\n", name, view.captionTitle);
   } else if (o.topic == "presets") {
     for (const std::string& name : scene::presetNames(o.presetsFolder())) text += name + "\n";
   } else if (o.topic == "boluses") {
@@ -141,7 +148,8 @@ Result<void> list(const RunOptions& o, Progress& progress) {
     std::vector<std::string> names;
     std::error_code ec;
     for (const auto& e : std::filesystem::directory_iterator(o.scenesFolder(), ec))
-      if (std::filesystem::exists(e.path() / "anatomy.json", ec) || std::filesystem::exists(e.path() / "scene.json", ec))
+      if (std::filesystem::exists(e.path() / "anatomy.json", ec) ||
+          std::filesystem::exists(e.path() / "scene.json", ec))
         names.push_back(e.path().filename().string());
     std::sort(names.begin(), names.end());
     for (const std::string& n : names) text += n + "\n";
@@ -179,7 +187,8 @@ Result<void> check(const RunOptions& o, Progress& progress) {
         if (e.path().extension() == ".json") files.push_back(e.path());
       std::sort(files.begin(), files.end());
       if (files.empty())
-        return usageError(given.string(), "no .json file in this folder", "Name a scene folder or a file.");
+        return usageError(given.string(), "no .json file in this folder",
+                          "Name a scene folder or a file.");
     }
     for (const auto& f : files) {
       if (auto ok = checkOne(o, f); !ok) return ok;

@@ -25,7 +25,8 @@ Result<void> loadBones(const std::filesystem::path& folder, LoadedScene& scene) 
     if (s.rigid || s.carrier == anatomy::Carrier::epiglottis)
       scene.rigid.structures.push_back(std::move(s));
     else
-      scene.notes.push_back(fmt::format("{}: soft structure without a motion of its own, the parametric one is used", s.name));
+      scene.notes.push_back(fmt::format(
+          "{}: soft structure without a motion of its own, the parametric one is used", s.name));
   }
   scene.rigid.landmarks = std::move(imported->anatomy.landmarks);
   return {};
@@ -39,7 +40,8 @@ Result<LoadedScene> loadScene(const RunOptions& options) {
   if (!std::filesystem::is_directory(folder, ec))
     return usageError(folder.string(), "no such scene folder", "See 'swallowclip list scenes'.");
   if (auto bones = loadBones(folder, scene); !bones) return std::unexpected(bones.error());
-  const auto softFolder = scene::isImportedScene(folder) ? options.scenesFolder() / "adult" : folder;
+  const auto softFolder =
+      scene::isImportedScene(folder) ? options.scenesFolder() / "adult" : folder;
   scene.files.push_back(softFolder / "lumen.json");
   auto lumen = scene::loadLumenDef(scene.files.back());
   if (!lumen) return std::unexpected(lumen.error());

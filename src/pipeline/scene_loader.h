@@ -14,7 +14,7 @@ namespace swallowclip::pipeline {
 
 struct LoadedScene {
   anatomy::Anatomy rigid;
-  std::unique_ptr<anatomy::Lumen> lumen;     ///< kept at one address: soft parts refer to it
+  std::unique_ptr<anatomy::Lumen> lumen;  ///< kept at one address: soft parts refer to it
   std::unique_ptr<anatomy::SoftParts> soft;
   std::vector<std::filesystem::path> files;  ///< what was read, for the inputs' hash
   std::vector<std::string> notes;

@@ -16,7 +16,7 @@
 
 namespace swallowclip::pipeline {
 namespace {
-constexpr double kSequenceRate_hz = 34;  // 109 meshes over 3.18 s, thesis 3.2
+constexpr double kSequenceRate_hz = 34;         // 109 meshes over 3.18 s, thesis 3.2
 constexpr double kNasopharynxFloor_m = -0.022;  // contact level of the raised velum, this scene
 
 std::vector<Vec3f> toFloat(const std::vector<Vec3>& p) {
@@ -32,9 +32,12 @@ airway::SkinningDef skinningDef() {
     return airway::WallMasters{static_cast<std::uint8_t>(w), {name}};
   };
   airway::SkinningDef d;
-  d.walls = {wall(Wall::palate, "maxilla"),     wall(Wall::velum, "soft_palate"),
-             wall(Wall::posterior, "pharyngeal_wall"), wall(Wall::tongue, "tongue"),
-             wall(Wall::larynx, "larynx_mucosa"), wall(Wall::esophagus, "esophagus")};
+  d.walls = {wall(Wall::palate, "maxilla"),
+             wall(Wall::velum, "soft_palate"),
+             wall(Wall::posterior, "pharyngeal_wall"),
+             wall(Wall::tongue, "tongue"),
+             wall(Wall::larynx, "larynx_mucosa"),
+             wall(Wall::esophagus, "esophagus")};
   d.seam_m = 0;  // the sheets of the parametric scene meet exactly
   return d;
 }
@@ -88,7 +91,8 @@ void appendStructures(const biomech::ModelState& state, frame::History& h) {
   }
 }
 
-Result<std::string> inputsHash(const RunOptions& o, const std::vector<std::filesystem::path>& files) {
+Result<std::string> inputsHash(const RunOptions& o,
+                               const std::vector<std::filesystem::path>& files) {
   std::string all = std::string(SWALLOWCLIP_VERSION) + "\n";
   for (const auto& f : files) {
     auto text = readFile(f);
@@ -107,20 +111,25 @@ struct Moving {
   std::vector<std::string> landmarkNames;
 };
 
-Result<Moving> setInMotion(const LoadedScene& scene, const kinematics::SwallowDef& swallow, int threads) {
-  kinematics::BakedMotion baked = kinematics::bake(scene.rigid, *scene.lumen, *scene.soft, swallow, kSequenceRate_hz);
+Result<Moving> setInMotion(const LoadedScene& scene, const kinematics::SwallowDef& swallow,
+                           int threads) {
+  kinematics::BakedMotion baked =
+      kinematics::bake(scene.rigid, *scene.lumen, *scene.soft, swallow, kSequenceRate_hz);
   auto model = biomech::Model::build(baked.sequence);
   if (!model) return std::unexpected(model.error());
   const anatomy::SkinLayout& layout = scene.lumen->skin();
   airway::BindSkin bind;
-  bind.mesh = {scene.lumen->skinPositions(scene.lumen->evaluate(scene.lumen->neutralPose())), layout.triangles};
+  bind.mesh = {scene.lumen->skinPositions(scene.lumen->evaluate(scene.lumen->neutralPose())),
+               layout.triangles};
   bind.wall = layout.wall;
   bind.s_m = layout.s_m;
   bind.u = layout.u;
   bind.branch = layout.branch;
   auto skin = airway::attachSkin(std::move(bind), *model, skinningDef());
   if (!skin) return std::unexpected(skin.error());
-  auto motion = skin->bake(*model, {.rate_hz = kSequenceRate_hz, .blend = airway::TimeBlend::convex, .threads = threads});
+  auto motion = skin->bake(
+      *model,
+      {.rate_hz = kSequenceRate_hz, .blend = airway::TimeBlend::convex, .threads = threads});
   if (!motion) return std::unexpected(motion.error());
   return Moving{std::move(*model), std::move(*motion),
                 kinematics::SequenceSampler(0, kSequenceRate_hz, std::move(baked.landmarks)),
@@ -150,26 +159,33 @@ void finishMeta(const bolus::Solver& solver, frame::Meta& m) {
 }
 }  // namespace
 
-Result<kinematics::SwallowDef> loadSwallow(const RunOptions& o, int score, std::filesystem::path* file) {
+Result<kinematics::SwallowDef> loadSwallow(const RunOptions& o, int score,
+                                           std::filesystem::path* file) {
   std::filesystem::path path = o.swallow;
   if (path.empty()) {
-    if (o.component == 0) return usageError("--component", "neither a component nor a swallow file is given", "Add --component 4 --score 0 or --swallow FILE.");
+    if (o.component == 0)
+      return usageError("--component", "neither a component nor a swallow file is given",
+                        "Add --component 4 --score 0 or --swallow FILE.");
     path = o.scenesFolder() / "swallows" / fmt::format("c{:02}-s{}.json", o.component, score);
     std::error_code ec;
     if (!std::filesystem::exists(path, ec))
-      return usageError(path.string(), fmt::format("no swallow file for component {}, score {}", o.component, score),
-                        "Component 4 is built in; for others write a swallow file and give it with --swallow.");
+      return usageError(
+          path.string(),
+          fmt::format("no swallow file for component {}, score {}", o.component, score),
+          "Component 4 is built in; for others write a swallow file and give it with --swallow.");
   }
   if (file) *file = path;
   auto swallow = scene::loadSwallow(path);
   if (!swallow) return swallow;
   for (const TrackSetting& s : o.sets)
-    if (auto set = scene::applySet(*swallow, fmt::format("{}.{}={}", s.track, s.key, s.value)); !set)
+    if (auto set = scene::applySet(*swallow, fmt::format("{}.{}={}", s.track, s.key, s.value));
+        !set)
       return std::unexpected(set.error());
   return swallow;
 }
 
-Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fps, Progress& progress) {
+Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fps,
+                                       Progress& progress) {
   std::filesystem::path swallowFile;
   auto swallow = loadSwallow(o, score, &swallowFile);
   if (!swallow) return std::unexpected(swallow.error());
@@ -198,7 +214,8 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
     m.bolus = file->name;
     m.density_kgm3 = fluid.density_kgm3;
     m.viscosity_Pas = bolus::apparentViscosity_Pas(fluid, 50);  // at 50/s, clinical-reference 4
-    scene->files.push_back(o.bolus.ends_with(".json") ? std::filesystem::path(o.bolus) : o.scenesFolder() / "boluses.json");
+    scene->files.push_back(o.bolus.ends_with(".json") ? std::filesystem::path(o.bolus)
+                                                      : o.scenesFolder() / "boluses.json");
   }
   auto hash = inputsHash(o, scene->files);
   if (!hash) return std::unexpected(hash.error());
@@ -222,7 +239,8 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
   h.skin.s_m.assign(walls.s_m.begin(), walls.s_m.end());
   h.skin.u.assign(walls.u.begin(), walls.u.end());
   for (const std::string& name : moving->landmarkNames) h.landmarks.push_back({name, {}});
-  for (const auto& [name, time] : kinematics::plannedEvents(*swallow)) h.plannedEvents.push_back({name, time});
+  for (const auto& [name, time] : kinematics::plannedEvents(*swallow))
+    h.plannedEvents.push_back({name, time});
 
   const int frames = static_cast<int>(std::floor(swallow->duration_s * fps + 1e-9)) + 1;
   std::vector<Vec3> p, v;
@@ -232,7 +250,8 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
     if (solver) {
       if (auto step = solver->advanceTo(t); !step) {
         Error e = step.error();
-        e.remedy += fmt::format("\n  Replay: {} (stopped at frame {} of {})", o.commandLine, k, frames);
+        e.remedy +=
+            fmt::format("\n  Replay: {} (stopped at frame {} of {})", o.commandLine, k, frames);
         return std::unexpected(e);
       }
       appendBolus(*solver, h);
@@ -243,7 +262,8 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
     h.skin.velocities.push_back(toFloat(v));
     appendStructures(moving->model.at(t), h);
     moving->landmarks.at(t, p, v);
-    for (std::size_t i = 0; i < h.landmarks.size(); ++i) h.landmarks[i].positions.push_back(p[i].cast<float>());
+    for (std::size_t i = 0; i < h.landmarks.size(); ++i)
+      h.landmarks[i].positions.push_back(p[i].cast<float>());
     progress.update(static_cast<double>(k + 1) / frames);
   }
   if (solver) finishMeta(*solver, m);

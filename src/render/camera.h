@@ -26,10 +26,10 @@ struct Bounds {
 
 struct Camera {
   Mat4f view, projection, viewProjection;
-  Eigen::Vector4f eye;            ///< w = 1 position; w = 0 direction towards the eye
-  Vec3f right, up, back;          ///< world axes of the picture; back points to the viewer
+  Eigen::Vector4f eye;    ///< w = 1 position; w = 0 direction towards the eye
+  Vec3f right, up, back;  ///< world axes of the picture; back points to the viewer
   float near_m = 0, far_m = 1;
-  Eigen::Vector2f pixelsPerMetre; ///< x: at view depth 1 m (perspective); y: constant (ortho)
+  Eigen::Vector2f pixelsPerMetre;  ///< x: at view depth 1 m (perspective); y: constant (ortho)
 
   /// Picture direction (x right, y up, z to the viewer) in world axes, unit.
   Vec3f fromPicture(const Vec3f& d) const {

@@ -67,8 +67,8 @@ struct Pen {
     cairo_set_source_rgba(cairo, c.x(), c.y(), c.z(), alpha);
   }
   /// Text with its top at y, cut with an ellipsis at maxWidth; returns the width used.
-  double text(const std::string& raw, double x, double y, double size, double maxWidth,
-              bool bold, float alpha, Align align) const {
+  double text(const std::string& raw, double x, double y, double size, double maxWidth, bool bold,
+              float alpha, Align align) const {
     if (raw.empty()) return 0;
     const std::unique_ptr<char, decltype(&g_free)> valid(
         g_utf8_make_valid(raw.c_str(), static_cast<gssize>(raw.size())), &g_free);
@@ -146,12 +146,11 @@ Result<void> drawCaptions(Image& image, const CaptionDef& def, const CaptionText
   const Pen up{top.cairo(), &def}, low{bottom.cairo(), &def};
 
   shade(up.cairo, topHeight, true);
-  const double viewWidth = up.text(text.viewLabel, width - margin, 0.55 * size, small,
-                                   0.3 * width, false, 0.9f, Align::right);
+  const double viewWidth = up.text(text.viewLabel, width - margin, 0.55 * size, small, 0.3 * width,
+                                   false, 0.9f, Align::right);
   up.text(text.title, margin, 0.4 * size, size, width - 3 * margin - viewWidth, true, 1.0f,
           Align::left);
-  up.text(text.subtitle, margin, 1.75 * size, small, width - 2 * margin, false, 0.85f,
-          Align::left);
+  up.text(text.subtitle, margin, 1.75 * size, small, width - 2 * margin, false, 0.85f, Align::left);
 
   shade(low.cairo, bottomHeight, false);
   const double line = bottomHeight - 1.65 * size, barY = bottomHeight - 0.45 * size;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
 #include "core/error.h"
+#include "core/image.h"
 #include "render/render_preset.h"
 
 namespace swallowclip::render {
@@ -16,11 +16,11 @@ struct CaptionEvent {
 };
 
 struct CaptionText {
-  std::string title;      ///< "MBSImP component 4, score 0: ..."
-  std::string subtitle;   ///< bolus, case
-  std::string viewLabel;  ///< empty = the view's captionTitle
-  std::string credit;     ///< empty = the preset's
-  std::vector<CaptionEvent> events;  ///< sorted by time
+  std::string title;                               ///< "MBSImP component 4, score 0: ..."
+  std::string subtitle;                            ///< bolus, case
+  std::string viewLabel;                           ///< empty = the view's captionTitle
+  std::string credit;                              ///< empty = the preset's
+  std::vector<CaptionEvent> events;                ///< sorted by time
   double time_s = 0, start_s = 0, duration_s = 0;  ///< bar runs start .. start + duration
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "render/context.h"
 
-#include "render/gl.h"  // before osmesa.h, which includes GL without prototypes
-
 #include <GL/osmesa.h>
 
 #include <array>
+
+#include "render/gl.h"  // before osmesa.h, which includes GL without prototypes
 
 namespace swallowclip::render {
 namespace {

@@ -145,8 +145,7 @@ void addBolus(DrawList& list, const frame::History& h, int frame, const RenderPr
   std::vector<FluidParticle> particles, film;
   const auto& positions = bolus.positions[frame];
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const auto state =
-        bolus.state.empty() ? frame::ParticleState::fluid : bolus.state[frame][i];
+    const auto state = bolus.state.empty() ? frame::ParticleState::fluid : bolus.state[frame][i];
     if (state == frame::ParticleState::fluid) particles.push_back({positions[i]});
     if (state == frame::ParticleState::film) film.push_back({positions[i]});
   }

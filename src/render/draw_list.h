@@ -28,10 +28,10 @@ struct DrawItem {
   std::string name;
   const Material* material = nullptr;  ///< lives in the preset
   float opacity = 1;
-  bool closed = false;                 ///< its back faces never show, but for uncapped cuts
+  bool closed = false;  ///< its back faces never show, but for uncapped cuts
   Range mesh;
-  std::vector<CutPlane> cuts;          ///< at most 3, those that touch the mesh
-  std::vector<Range> fans, outlines;   ///< [cut] section to fill and its border; may be empty
+  std::vector<CutPlane> cuts;         ///< at most 3, those that touch the mesh
+  std::vector<Range> fans, outlines;  ///< [cut] section to fill and its border; may be empty
   Bounds bounds;
 };
 

@@ -100,7 +100,8 @@ std::vector<Vec3f> sectionSegments(std::span<const Triangle> triangles,
                                    std::span<const Vec3f> positions, const Vec3f& normal,
                                    float offset_m) {
   std::vector<float> height(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) height[i] = normal.dot(positions[i]) - offset_m;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    height[i] = normal.dot(positions[i]) - offset_m;
   std::vector<Vec3f> out;
   for (const Triangle& t : triangles) {
     Vec3f down = Vec3f::Zero(), up = Vec3f::Zero();

@@ -14,7 +14,7 @@ namespace {
 constexpr float kSupport = 1.9f;     // blob support radius; assumed 1.6..2.2
 constexpr float kBulkSum = 4.38f;    // sum of blobs in a full lattice: kSupport^3 * 4 pi 16/315
 constexpr float kMaxStretch = 2.5f;  // longest over shortest blob axis; Yu & Turk 2013 use 4
-constexpr float kPrior = 2.0f;       // weight of "round" against the neighbours' shape; assumed 1..4
+constexpr float kPrior = 2.0f;  // weight of "round" against the neighbours' shape; assumed 1..4
 
 using Grid3 = Eigen::Vector3i;
 
@@ -39,7 +39,8 @@ std::int64_t cellKey(const Grid3& c) {
 class Neighbours {
  public:
   Neighbours(const std::vector<Vec3f>& p, float radius) : p_(p), radius_(radius) {
-    for (std::size_t i = 0; i < p.size(); ++i) cells_[cellKey(cell(p[i]))].push_back(static_cast<int>(i));
+    for (std::size_t i = 0; i < p.size(); ++i)
+      cells_[cellKey(cell(p[i]))].push_back(static_cast<int>(i));
   }
   template <class F>
   void around(const Vec3f& x, F&& f) const {
@@ -189,8 +190,7 @@ std::vector<int> placeVertices(const Field& f, float level, std::vector<Vec3f>& 
             ++crossings;
           }
         vertexOf[f.index(x, y, z)] = static_cast<int>(out.size());
-        out.push_back(f.origin +
-                      f.cell * (Vec3f(x, y, z) + sum / static_cast<float>(crossings)));
+        out.push_back(f.origin + f.cell * (Vec3f(x, y, z) + sum / static_cast<float>(crossings)));
       }
   return vertexOf;
 }
@@ -225,11 +225,10 @@ FluidSurface fluidSurface(std::span<const FluidParticle> particles, const FluidS
   const Neighbours near(p, 2 * kSupport * 0.9f);
   std::vector<Blob> blobs;
   for (std::size_t i = 0; i < p.size(); ++i)
-    blobs.push_back(particles[i].wallNormal.squaredNorm() > 0.5f
-                        ? filmBlob(p[i], particles[i].wallNormal,
-                                   static_cast<float>(def.filmThickness), near)
-                        : freeBlob(static_cast<int>(i), p, near,
-                                   static_cast<float>(def.smoothing)));
+    blobs.push_back(
+        particles[i].wallNormal.squaredNorm() > 0.5f
+            ? filmBlob(p[i], particles[i].wallNormal, static_cast<float>(def.filmThickness), near)
+            : freeBlob(static_cast<int>(i), p, near, static_cast<float>(def.smoothing)));
   const float level = static_cast<float>(def.level);
   const Field field = splat(blobs, static_cast<float>(def.cell));
   const std::vector<int> vertexOf = placeVertices(field, level, s.positions);

@@ -21,10 +21,11 @@ struct FluidSurface {
 };
 
 struct FluidSurfaceDef {
-  double spacing_m = 2e-3;      ///< particle spacing dx
-  double cell = 0.5;            ///< grid cell in dx; assumed 0.4..0.6
-  double smoothing = 0.4;       ///< pull of a centre to its neighbours' mean; Yu & Turk 0.9, which shrinks
-  double level = 0.42;          ///< of the summed field; a 5 mL ball keeps its volume (tested)
+  double spacing_m = 2e-3;  ///< particle spacing dx
+  double cell = 0.5;        ///< grid cell in dx; assumed 0.4..0.6
+  double smoothing =
+      0.4;              ///< pull of a centre to its neighbours' mean; Yu & Turk 0.9, which shrinks
+  double level = 0.42;  ///< of the summed field; a 5 mL ball keeps its volume (tested)
   double filmThickness = 0.35;  ///< half thickness of a film disc in dx; assumed 0.2..0.5
 };
 

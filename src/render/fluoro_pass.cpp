@@ -40,8 +40,8 @@ Result<Image> FluoroPass::draw(const DrawList& list, const Camera& camera,
     for (const DrawItem& item : *items) {
       // tissue counts against the air of the airway, denser bodies against the tissue around them
       const float mu = item.material->attenuation_per_m;
-      length_.set("uAttenuation", mu > 1.15f * def.softTissue_per_m ? mu - def.softTissue_per_m
-                                                                    : 0.5f * mu);
+      length_.set("uAttenuation",
+                  mu > 1.15f * def.softTissue_per_m ? mu - def.softTissue_per_m : 0.5f * mu);
       mesh_.draw(item.mesh);
     }
   glDisable(GL_BLEND);

@@ -54,10 +54,10 @@ Result<Program> Program::load(const std::filesystem::path& dir, const std::strin
   GLint ok = 0;
   glGetProgramiv(p.id_, GL_LINK_STATUS, &ok);
   if (!ok)
-    return usageError((dir / vertex).string() + " + " + fragment,
-                      "the stages do not link: " +
-                          infoLog(p.id_, glGetProgramiv, glGetProgramInfoLog),
-                      "Make outputs of the first agree with inputs of the second.");
+    return usageError(
+        (dir / vertex).string() + " + " + fragment,
+        "the stages do not link: " + infoLog(p.id_, glGetProgramiv, glGetProgramInfoLog),
+        "Make outputs of the first agree with inputs of the second.");
   return p;
 }
 
@@ -111,15 +111,14 @@ Result<void> Target::create(const char* what, int width, int height, int samples
   }
   if (depthFormat) {
     depth_.create(depthFormat, width, height, samples, GL_NEAREST);
-    const bool stencil =
-        depthFormat == GL_DEPTH24_STENCIL8 || depthFormat == GL_DEPTH32F_STENCIL8;
+    const bool stencil = depthFormat == GL_DEPTH24_STENCIL8 || depthFormat == GL_DEPTH32F_STENCIL8;
     glFramebufferTexture(GL_FRAMEBUFFER,
                          stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth_.id(),
                          0);
   }
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    return failure(what, fmt::format("no framebuffer of {} x {} with {} samples", width, height,
-                                     samples),
+    return failure(what,
+                   fmt::format("no framebuffer of {} x {} with {} samples", width, height, samples),
                    "Choose a smaller size or fewer samples in the preset.");
   return {};
 }

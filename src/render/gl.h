@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GL names for this room only. libOSMesa exports GL itself, so prototypes suffice (neither libGL nor
-// a loader may be linked); the direct-state-access functions of 4.5 are not among its exports.
+// GL names for this room only. libOSMesa exports GL itself, so prototypes suffice (neither libGL
+// nor a loader may be linked); the direct-state-access functions of 4.5 are not among its exports.
 #pragma once
 #ifndef GL_GLEXT_PROTOTYPES
 #define GL_GLEXT_PROTOTYPES

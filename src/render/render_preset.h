@@ -19,12 +19,12 @@ using Colour = Vec3f;
 struct Material {
   Colour baseColour_srgb{0.78f, 0.72f, 0.68f};
   Colour sectionColour_srgb{0.62f, 0.55f, 0.52f};  ///< colour of the capped cut
-  float roughness = 0.5f;      ///< GGX, perceptual (alpha = roughness^2), 0.05..1
-  float specular = 0.5f;       ///< 0.5 = normal reflectance 0.04 (refractive index 1.5)
-  float translucency = 0.0f;   ///< light wrapping past the terminator, tinted by the base colour
-  float wetness = 0.0f;        ///< strength of the thin glossy water coat
-  float mottle = 0.0f;         ///< contrast of fine tissue-fixed colour variation
-  float opacity = 1.0f;        ///< below 1 drawn as ghost in every view
+  float roughness = 0.5f;     ///< GGX, perceptual (alpha = roughness^2), 0.05..1
+  float specular = 0.5f;      ///< 0.5 = normal reflectance 0.04 (refractive index 1.5)
+  float translucency = 0.0f;  ///< light wrapping past the terminator, tinted by the base colour
+  float wetness = 0.0f;       ///< strength of the thin glossy water coat
+  float mottle = 0.0f;        ///< contrast of fine tissue-fixed colour variation
+  float opacity = 1.0f;       ///< below 1 drawn as ghost in every view
   float attenuation_per_m = 20.0f;  ///< fluoro only: linear X-ray attenuation
 };
 
@@ -33,7 +33,7 @@ struct Material {
 struct DirectionalLight {
   Vec3f direction{-0.45f, 0.75f, 0.75f};
   Colour colour_srgb{1.0f, 0.97f, 0.92f};
-  float intensity = 1.55f;     ///< diffuse white facing it becomes this bright (linear)
+  float intensity = 1.55f;  ///< diffuse white facing it becomes this bright (linear)
 };
 
 struct LightDef {
@@ -49,9 +49,9 @@ struct LightDef {
 };
 
 struct AoDef {
-  float strength = 0.85f;      ///< 0 switches the pass off
+  float strength = 0.85f;  ///< 0 switches the pass off
   float radius_m = 8e-3f;
-  int taps = 16;               ///< 4..32
+  int taps = 16;  ///< 4..32
 };
 
 struct BackgroundDef {
@@ -62,7 +62,7 @@ struct BackgroundDef {
 struct CaptionDef {
   bool on = true;
   std::string font = "DejaVu Sans";
-  float size_px = 22.0f;       ///< title; the other lines are 0.72 of it
+  float size_px = 22.0f;  ///< title; the other lines are 0.72 of it
   Colour colour_srgb{0.96f, 0.96f, 0.94f};
   bool timeBar = true;
   std::string credit = "Training illustration, not for diagnosis";
@@ -74,7 +74,7 @@ struct ClipRule {
   double offset_m = 0;
   std::vector<std::string> only{};    ///< structures cut; empty = all
   std::vector<std::string> except{};  ///< structures left whole
-  bool cap = true;                  ///< fill the cut with the section colour
+  bool cap = true;                    ///< fill the cut with the section colour
 };
 
 enum class Projection { perspective, orthographic };
@@ -86,10 +86,10 @@ struct ViewDef {
   Style style = Style::surface;
   Projection projection = Projection::perspective;
   Vec3 eye_m{0.25, -0.25, 0.1}, target_m{0, 0, -0.05}, up{0, 0, 1};
-  double fovY_rad = 0.5;            ///< perspective: full vertical angle
-  double orthoHeight_m = 0.16;      ///< orthographic: metres over the picture's height
-  std::vector<ClipRule> cuts;       ///< at most 3 may apply to one structure
-  std::vector<std::string> hidden;  ///< structures not drawn
+  double fovY_rad = 0.5;                 ///< perspective: full vertical angle
+  double orthoHeight_m = 0.16;           ///< orthographic: metres over the picture's height
+  std::vector<ClipRule> cuts;            ///< at most 3 may apply to one structure
+  std::vector<std::string> hidden;       ///< structures not drawn
   std::map<std::string, float> ghosted;  ///< structure -> opacity 0..1
 };
 
@@ -109,16 +109,16 @@ struct RenderPreset {
   double fps = 30;                 ///< >= 30: pulse rate changes scores (Bonilha 2013)
   int msaa = 4;                    ///< samples: 1, 2 or 4
   float exposure = 1.0f;
-  bool toneMap = true;             ///< soft highlight shoulder; false = clamp
+  bool toneMap = true;                ///< soft highlight shoulder; false = clamp
   float sectionOutline_m = 0.35e-3f;  ///< width of the line around caps, 0 = none
   float sectionOutlineDarkness = 0.55f;
-  float creaseAngle_rad = 0.87f;   ///< edges sharper than this keep a hard shade
+  float creaseAngle_rad = 0.87f;  ///< edges sharper than this keep a hard shade
 
   std::map<std::string, Material> materials;   ///< by material name (muscle, bone, ...)
   std::map<std::string, Material> structures;  ///< by structure name; goes before `materials`
   Material fallback;                           ///< for unknown materials
   Material bolus;
-  std::vector<std::string> sectionPriority;    ///< who wins where sections overlap, first wins
+  std::vector<std::string> sectionPriority;  ///< who wins where sections overlap, first wins
 
   LightDef light;
   AoDef ao;

@@ -24,8 +24,12 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() {
   if (impl_) (void)impl_->context->makeCurrent();  // GL objects are deleted in their own context
 }
-const RenderPreset& Renderer::preset() const { return impl_->preset; }
-std::string Renderer::description() const { return impl_->context->description(); }
+const RenderPreset& Renderer::preset() const {
+  return impl_->preset;
+}
+std::string Renderer::description() const {
+  return impl_->context->description();
+}
 
 Result<Renderer> Renderer::create(const std::filesystem::path& shaderDir, RenderPreset preset) {
   if (auto wrong = preset.validate(); !wrong.empty())

@@ -8,13 +8,12 @@
 namespace swallowclip::render {
 namespace {
 
-constexpr float kAoRange = 0.4f;           // depths this share of the radius apart are not mixed
+constexpr float kAoRange = 0.4f;          // depths this share of the radius apart are not mixed
 constexpr float kShadowBias_m = 0.8e-3f;  // about 3 texels of a 1024 map over 250 mm
 
 Vec3f linear(const Colour& srgb) {  // IEC 61966-2-1
-  return srgb.unaryExpr([](float c) {
-    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-  });
+  return srgb.unaryExpr(
+      [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });
 }
 
 void setClips(Program& p, const std::vector<CutPlane>& cuts, int without = -1) {
@@ -27,7 +26,9 @@ void setClips(Program& p, const std::vector<CutPlane>& cuts, int without = -1) {
   }
 }
 
-void cullBack(bool on) { on ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE); }
+void cullBack(bool on) {
+  on ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
+}
 
 bool samePlane(const CutPlane& a, const CutPlane& b) {
   return a.normal == b.normal && a.offset == b.offset;
@@ -46,7 +47,8 @@ void scissorTo(const Bounds& b, const Camera& camera, int width, int height) {
     high = high.cwiseMax(q.head<2>() / q.w());
   }
   const auto pixel = [](float v, int n, int extra) {
-    return std::clamp(static_cast<int>(std::floor((v * 0.5f + 0.5f) * static_cast<float>(n))) + extra, 0, n);
+    return std::clamp(
+        static_cast<int>(std::floor((v * 0.5f + 0.5f) * static_cast<float>(n))) + extra, 0, n);
   };
   const int x0 = pixel(low.x(), width, -1), x1 = pixel(high.x(), width, 2);
   const int y0 = pixel(low.y(), height, -1), y1 = pixel(high.y(), height, 2);
@@ -77,9 +79,7 @@ void GpuMesh::create() {
 
 void GpuMesh::upload(const std::vector<Vertex>& vertices,
                      const std::vector<std::uint32_t>& indices) {
-  const auto bytes = [](const auto& v) {
-    return static_cast<GLsizeiptr>(v.size() * sizeof(v[0]));
-  };
+  const auto bytes = [](const auto& v) { return static_cast<GLsizeiptr>(v.size() * sizeof(v[0])); };
   glBindVertexArray(array_);
   glBindBuffer(GL_ARRAY_BUFFER, vertices_);
   glBufferData(GL_ARRAY_BUFFER, bytes(vertices), vertices.data(), GL_STREAM_DRAW);
@@ -157,8 +157,8 @@ void SurfacePass::addQuads(DrawList& list) {
         const Vec3f u = c.normal.unitOrthogonal() * size, v = c.normal.cross(u);
         const Range r{static_cast<int>(list.indices.size()), 6,
                       static_cast<int>(list.vertices.size())};
-        for (const Vec3f& p : {Vec3f(foot - u - v), Vec3f(foot + u - v), Vec3f(foot + u + v),
-                               Vec3f(foot - u + v)})
+        for (const Vec3f& p :
+             {Vec3f(foot - u - v), Vec3f(foot + u - v), Vec3f(foot + u + v), Vec3f(foot - u + v)})
           list.vertices.push_back({p, c.normal, p});
         for (std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) list.indices.push_back(i);
         quads_.push_back({c, r});
@@ -173,8 +173,8 @@ Range SurfacePass::quadFor(const CutPlane& plane) const {
 
 void SurfacePass::drawShadowMap(const DrawList& list, const Camera& camera,
                                 const RenderPreset& preset) {
-  shadowFromWorld_ = shadowMatrix(
-      list.restBounds, camera.fromPicture(preset.light.key.direction), &shadowRadius_m_);
+  shadowFromWorld_ = shadowMatrix(list.restBounds, camera.fromPicture(preset.light.key.direction),
+                                  &shadowRadius_m_);
   if (!preset.light.shadow) return;
   Mat4f clipFromTexture = Mat4f::Identity();
   clipFromTexture.diagonal() << 2, 2, 2, 1;

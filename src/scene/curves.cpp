@@ -11,8 +11,8 @@ bool increasing(const JsonNode& node, std::string_view key, const Points& points
   }
   for (std::size_t i = 1; i < points.size(); ++i)
     if (!(points[i][0] > points[i - 1][0])) {
-      node.member(key).fail(fmt::format("point {} does not come after point {} ({} after {})", i + 1,
-                                        i, points[i][0], points[i - 1][0]),
+      node.member(key).fail(fmt::format("point {} does not come after point {} ({} after {})",
+                                        i + 1, i, points[i][0], points[i - 1][0]),
                             "Sort the points by their first number, each one once.");
       return false;
     }

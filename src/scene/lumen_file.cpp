@@ -43,10 +43,10 @@ Result<anatomy::LumenDef> loadLumenDef(const std::filesystem::path& path) {
       std::tuple_cat(readCurvePair(j, "inlet_depth_back_y_z_mm", 1, kMm));
   d.inletHalfWidth = readCurve(j, "inlet_depth_half_width_mm", 1, kMm);
   const std::vector<std::pair<const char*, double>> order{
-      {"velum_start_mm", d.velumStart_m}, {"uvula_mm", d.uvula_m},
-      {"wall_start_mm", d.wallStart_m},   {"tongue_end_mm", d.tongueEnd_m},
+      {"velum_start_mm", d.velumStart_m},       {"uvula_mm", d.uvula_m},
+      {"wall_start_mm", d.wallStart_m},         {"tongue_end_mm", d.tongueEnd_m},
       {"epiglottis_tip_mm", d.epiglottisTip_m}, {"arytenoid_mm", d.arytenoid_m},
-      {"ues_start_mm", d.uesStart_m},     {"length_mm", d.length_m}};
+      {"ues_start_mm", d.uesStart_m},           {"length_mm", d.length_m}};
   for (std::size_t i = 1; i < order.size(); ++i)
     if (!(order[i].second > order[i - 1].second))
       j.fail(fmt::format("'{}' must be larger than '{}'", order[i].first, order[i - 1].first),

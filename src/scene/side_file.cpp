@@ -18,14 +18,21 @@ Json number(double v) {
   const double scale = std::pow(10.0, 5 - std::floor(std::log10(std::abs(v))));
   return std::round(v * scale) / scale;
 }
-Json number(const std::optional<double>& v) { return v ? number(*v) : Json(nullptr); }
+Json number(const std::optional<double>& v) {
+  return v ? number(*v) : Json(nullptr);
+}
 
 Json conservationJson(const scoring::Conservation& c) {
-  return {{"particles_start", c.particlesStart},   {"particles_end", c.particlesEnd},
-          {"swallowed", c.swallowed},              {"left_in_oral", c.leftInOral},
-          {"left_in_pharynx", c.leftInPharynx},    {"in_airway", c.inAirway},
-          {"in_nasopharynx", c.inNasopharynx},     {"in_esophagus", c.inEsophagus},
-          {"escaped", c.escaped},                  {"swallowed_fraction", number(c.swallowedFraction)},
+  return {{"particles_start", c.particlesStart},
+          {"particles_end", c.particlesEnd},
+          {"swallowed", c.swallowed},
+          {"left_in_oral", c.leftInOral},
+          {"left_in_pharynx", c.leftInPharynx},
+          {"in_airway", c.inAirway},
+          {"in_nasopharynx", c.inNasopharynx},
+          {"in_esophagus", c.inEsophagus},
+          {"escaped", c.escaped},
+          {"swallowed_fraction", number(c.swallowedFraction)},
           {"mean_density_error", number(c.meanDensityError)},
           {"max_density_error", number(c.maxDensityError)},
           {"film_fraction", number(c.filmFraction)}};
@@ -62,7 +69,8 @@ std::string sideFileText(const frame::History& h, const scoring::Metrics& m) {
   for (const auto& [component, score] : m.scores)
     j["scores_measured"][std::to_string(component)] = score ? Json(*score) : Json(nullptr);
   j["score_reasons"] = Json::object();
-  for (const auto& [component, reason] : m.reasons) j["score_reasons"][std::to_string(component)] = reason;
+  for (const auto& [component, reason] : m.reasons)
+    j["score_reasons"][std::to_string(component)] = reason;
   j["label_confirmed"] = m.labelConfirmed ? Json(*m.labelConfirmed) : Json(nullptr);
   j["label_reason"] = m.labelReason;
   j["events_s"] = Json::object();
@@ -77,7 +85,8 @@ std::string sideFileText(const frame::History& h, const scoring::Metrics& m) {
     if (!q.reason.empty()) out["reason"] = q.reason;
   }
   j["bolus_conservation"] = m.conservation ? conservationJson(*m.conservation) : Json(nullptr);
-  j["credit"] = "Training illustration, not for diagnosis. MBSImP is named only to say what the clip shows.";
+  j["credit"] =
+      "Training illustration, not for diagnosis. MBSImP is named only to say what the clip shows.";
   return j.dump(1) + "\n";
 }
 }  // namespace swallowclip::scene

@@ -17,15 +17,15 @@ constexpr int kMaxBases = 4;
 
 struct TrackKey {
   const char* name;
-  double Track::* field;
+  double Track::*field;
   double min, max;
 };
 constexpr double kTime = 60;
 const std::vector<TrackKey>& trackKeys() {
   static const std::vector<TrackKey> keys{
-      {"onset_s", &Track::onset_s, -kTime, kTime},   {"peak_s", &Track::peak_s, -kTime, kTime},
-      {"hold_s", &Track::hold_s, -kTime, kTime},     {"offset_s", &Track::offset_s, -kTime, kTime},
-      {"amplitude", &Track::amplitude, -2, 3},       {"delay_s", &Track::delay_s, -kTime, kTime},
+      {"onset_s", &Track::onset_s, -kTime, kTime}, {"peak_s", &Track::peak_s, -kTime, kTime},
+      {"hold_s", &Track::hold_s, -kTime, kTime},   {"offset_s", &Track::offset_s, -kTime, kTime},
+      {"amplitude", &Track::amplitude, -2, 3},     {"delay_s", &Track::delay_s, -kTime, kTime},
       {"speed", &Track::speed, 0.05, 20}};
   return keys;
 }
@@ -38,22 +38,28 @@ void readTracks(const JsonNode& j, SwallowDef& d) {
   if (!j.has("tracks")) return;
   const auto& kinds = kinematics::trackKinds();
   for (const auto& [name, node] : j.object("tracks").members()) {
-    const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == name; });
+    const auto kind =
+        std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == name; });
     if (kind == kinds.end()) {
       std::vector<std::string> known;
       for (const auto& k : kinds) known.push_back(k.name);
       const std::string near = nearestName(name, known);
-      node.fail(fmt::format("unknown track '{}'", name),
-                near.empty() ? "See docs for the tracks." : fmt::format("Did you mean '{}'?", near));
+      node.fail(
+          fmt::format("unknown track '{}'", name),
+          near.empty() ? "See docs for the tracks." : fmt::format("Did you mean '{}'?", near));
       continue;
     }
     Track& t = d.tracks[name];
-    for (const TrackKey& key : trackKeys()) t.*key.field = node.number(key.name, key.min, key.max, t.*key.field);
+    for (const TrackKey& key : trackKeys())
+      t.*key.field = node.number(key.name, key.min, key.max, t.*key.field);
     if (kind->length)
-      t.peakValue = node.number("peak_mm", 0, 60, t.peakValue == 1 ? 0 : t.peakValue / kMetrePerMm) * kMetrePerMm;
+      t.peakValue =
+          node.number("peak_mm", 0, 60, t.peakValue == 1 ? 0 : t.peakValue / kMetrePerMm) *
+          kMetrePerMm;
     else
       t.peakValue = node.number("peak", 0, 1, t.peakValue);
-    if (!ordered(t)) node.fail("onset_s <= peak_s <= hold_s <= offset_s does not hold", "Sort the four times.");
+    if (!ordered(t))
+      node.fail("onset_s <= peak_s <= hold_s <= offset_s does not hold", "Sort the four times.");
   }
 }
 
@@ -65,7 +71,8 @@ Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
   if (j.has("base")) {
     const std::string base = j.text("base");
     if (depth >= kMaxBases) {
-      j.member("base").fail("files are based on each other too deeply or in a circle", "Base it on normal.json.");
+      j.member("base").fail("files are based on each other too deeply or in a circle",
+                            "Base it on normal.json.");
     } else if (!base.empty()) {
       auto parent = load(path.parent_path() / base, depth + 1);
       if (!parent) return parent;
@@ -79,14 +86,17 @@ Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
   d.duration_s = j.number("duration_s", 0.5, kTime, d.duration_s);
   d.bpm_s = j.number("planned_bpm_s", 0, kTime, d.bpm_s);
   if (j.has("cues_s")) d.cues_s = j.numbers("cues_s");
-  if (d.cues_s.empty() || d.cues_s.front() != 0) j.fail("'cues_s' must begin with 0", "Time 0 is the cue.");
+  if (d.cues_s.empty() || d.cues_s.front() != 0)
+    j.fail("'cues_s' must begin with 0", "Time 0 is the cue.");
   if (j.has("front_s_mm")) d.front_m = readCurve(j, "front_s_mm", 1, kMetrePerMm);
   d.frontAmplitude = j.number("front_amplitude", 0, 1, d.frontAmplitude);
   d.roomFactor = j.number("room_factor", 1.1, 1.6, d.roomFactor);
   d.grooveStart_m = j.number("groove_start_mm", 0, 40, d.grooveStart_m / kMetrePerMm) * kMetrePerMm;
   d.grooveEnd_m = j.number("groove_end_mm", 25, 70, d.grooveEnd_m / kMetrePerMm) * kMetrePerMm;
-  d.grooveHalfWidth_m = j.number("groove_half_width_mm", 6, 15, d.grooveHalfWidth_m / kMetrePerMm) * kMetrePerMm;
-  d.rockAmplitude_m = j.number("rock_amplitude_mm", 0, 20, d.rockAmplitude_m / kMetrePerMm) * kMetrePerMm;
+  d.grooveHalfWidth_m =
+      j.number("groove_half_width_mm", 6, 15, d.grooveHalfWidth_m / kMetrePerMm) * kMetrePerMm;
+  d.rockAmplitude_m =
+      j.number("rock_amplitude_mm", 0, 20, d.rockAmplitude_m / kMetrePerMm) * kMetrePerMm;
   d.rockRate_hz = j.number("rock_rate_hz", 0.1, 5, d.rockRate_hz);
   d.rockCycles = j.integer("rock_cycles", 0, 20, static_cast<int>(d.rockCycles));
   d.rockStart_s = j.number("rock_start_s", 0, kTime, d.rockStart_s);
@@ -95,40 +105,52 @@ Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
   if (delay != 0)
     for (auto& [name, track] : d.tracks)
       if (name != "chute") track.delay_s += delay;
-  if (d.front_m.empty()) j.fail("no 'front_s_mm', neither here nor in a base", "Add the contact front.");
+  if (d.front_m.empty())
+    j.fail("no 'front_s_mm', neither here nor in a base", "Add the contact front.");
   if (auto done = file->finish(); !done) return std::unexpected(done.error());
   return d;
 }
 }  // namespace
 
-Result<SwallowDef> loadSwallow(const std::filesystem::path& path) { return load(path, 0); }
+Result<SwallowDef> loadSwallow(const std::filesystem::path& path) {
+  return load(path, 0);
+}
 
 Result<void> applySet(SwallowDef& swallow, const std::string& assignment) {
   const auto dot = assignment.find('.'), equal = assignment.find('=');
   if (dot == std::string::npos || equal == std::string::npos || equal < dot)
     return usageError("--set " + assignment, "is not of the form track.key=value",
                       "For example --set velum.onset_s=0.4");
-  const std::string track = assignment.substr(0, dot), key = assignment.substr(dot + 1, equal - dot - 1);
+  const std::string track = assignment.substr(0, dot),
+                    key = assignment.substr(dot + 1, equal - dot - 1);
   std::vector<std::string> tracks, keys;
   for (const auto& k : kinematics::trackKinds()) tracks.push_back(k.name);
   for (const auto& k : trackKeys()) keys.push_back(k.name);
-  const auto unknown = [&](const std::string& what, const std::string& word, const std::vector<std::string>& known) {
+  const auto unknown = [&](const std::string& what, const std::string& word,
+                           const std::vector<std::string>& known) {
     const std::string near = nearestName(word, known);
     return usageError("--set " + assignment, fmt::format("unknown {} '{}'", what, word),
-                      near.empty() ? fmt::format("Known: {}.", fmt::join(known, ", ")) : fmt::format("Did you mean '{}'?", near));
+                      near.empty() ? fmt::format("Known: {}.", fmt::join(known, ", "))
+                                   : fmt::format("Did you mean '{}'?", near));
   };
-  if (std::find(tracks.begin(), tracks.end(), track) == tracks.end()) return unknown("track", track, tracks);
-  const auto it = std::find_if(trackKeys().begin(), trackKeys().end(), [&](const TrackKey& k) { return k.name == key; });
+  if (std::find(tracks.begin(), tracks.end(), track) == tracks.end())
+    return unknown("track", track, tracks);
+  const auto it = std::find_if(trackKeys().begin(), trackKeys().end(),
+                               [&](const TrackKey& k) { return k.name == key; });
   if (it == trackKeys().end()) return unknown("key", key, keys);
   double value = 0;
   const char* end = assignment.data() + assignment.size();
   const auto [p, ec] = std::from_chars(assignment.data() + equal + 1, end, value);
   if (ec != std::errc() || p != end || !std::isfinite(value) || value < it->min || value > it->max)
-    return usageError("--set " + assignment, fmt::format("the value must be a number in [{}, {}]", it->min, it->max), "Correct it.");
+    return usageError("--set " + assignment,
+                      fmt::format("the value must be a number in [{}, {}]", it->min, it->max),
+                      "Correct it.");
   Track& t = swallow.tracks[track];
   t.*(it->field) = value;
   if (!ordered(t))
-    return usageError("--set " + assignment, "onset_s <= peak_s <= hold_s <= offset_s no longer holds", "Move the other times too.");
+    return usageError("--set " + assignment,
+                      "onset_s <= peak_s <= hold_s <= offset_s no longer holds",
+                      "Move the other times too.");
   return {};
 }
 }  // namespace swallowclip::scene

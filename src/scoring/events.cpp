@@ -225,9 +225,9 @@ void addIntervals(const History& h, const ScoringRules& rules, EventReport& out)
                        rules.tailShare * 100, rules.uesEnd_m * 1e3));
   if (!tail)
     out.quantities.back().reason =
-        hasBolus(h) ? fmt::format("less than {:g} % of the bolus passes the UES",
-                                  rules.throughShare * 100)
-                    : "the history has no bolus";
+        hasBolus(h)
+            ? fmt::format("less than {:g} % of the bolus passes the UES", rules.throughShare * 100)
+            : "the history has no bolus";
 }
 }  // namespace
 

@@ -68,5 +68,7 @@ Result<void> HashSink::push(const Image& image) {
   return {};
 }
 
-Result<void> HashSink::finish() { return {}; }
+Result<void> HashSink::finish() {
+  return {};
+}
 }  // namespace swallowclip::video

@@ -25,13 +25,13 @@ class FrameSink {
 /// An H.264 web clip (see mp4_sink.cpp for every setting).
 struct Mp4Def {
   std::filesystem::path path;
-  int width = 1280, height = 720;    ///< even
+  int width = 1280, height = 720;               ///< even
   int rateNumerator = 30, rateDenominator = 1;  ///< frames/s, >= 30 (Bonilha 2013: lower rates
                                                 ///< change MBSImP scores)
-  int crf = 19;            ///< x264 constant quality, 1..51 (ecosystem note: 18 to 20)
-  int keyframeEvery = 8;   ///< frames; measured: +12 % bytes over 30, every step back is quick
-  std::string preset = "medium";     ///< x264 speed word
-  int queuedFrames = 4;    ///< pictures that may wait for the encoder's thread
+  int crf = 19;           ///< x264 constant quality, 1..51 (ecosystem note: 18 to 20)
+  int keyframeEvery = 8;  ///< frames; measured: +12 % bytes over 30, every step back is quick
+  std::string preset = "medium";  ///< x264 speed word
+  int queuedFrames = 4;           ///< pictures that may wait for the encoder's thread
 };
 Result<std::unique_ptr<FrameSink>> makeMp4Sink(const Mp4Def& def);
 

@@ -53,16 +53,17 @@ Result<void> H264Encoder::openCodec(const Mp4Def& def) {
 
   // scenecut off and min-keyint = keyint: a keyframe exactly every keyframeEvery frames.
   // cpu-independent: SSE2 and AVX2 machines give the same pixels.
-  const std::string x264 = fmt::format(
-      "threads=1:cpu-independent=1:keyint={0}:min-keyint={0}:scenecut=0:open-gop=0",
-      def.keyframeEvery);
+  const std::string x264 =
+      fmt::format("threads=1:cpu-independent=1:keyint={0}:min-keyint={0}:scenecut=0:open-gop=0",
+                  def.keyframeEvery);
   av_opt_set(c->priv_data, "preset", def.preset.c_str(), 0);
   av_opt_set(c->priv_data, "profile", "high", 0);
   av_opt_set(c->priv_data, "crf", std::to_string(def.crf).c_str(), 0);
   av_opt_set(c->priv_data, "x264-params", x264.c_str(), 0);
   if (const int code = avcodec_open2(c, h264, nullptr); code < 0)
-    return fail(fmt::format("x264 refuses {} x {} at preset \"{}\"", def.width, def.height,
-                            def.preset), code);
+    return fail(
+        fmt::format("x264 refuses {} x {} at preset \"{}\"", def.width, def.height, def.preset),
+        code);
   return {};
 }
 
@@ -84,18 +85,24 @@ Result<void> H264Encoder::openConverter(const Mp4Def& def) {
   SwsContext* s = converter_.get();
   if (!s) return fail("no memory for the colour conversion", AVERROR(ENOMEM));
   for (const auto& [key, value] :
-       {std::pair{"srcw", def.width}, {"srch", def.height}, {"dstw", def.width},
-        {"dsth", def.height}, {"src_format", static_cast<int>(AV_PIX_FMT_RGB0)},
-        {"dst_format", static_cast<int>(AV_PIX_FMT_YUV420P)}, {"sws_flags", kExactScaling},
+       {std::pair{"srcw", def.width},
+        {"srch", def.height},
+        {"dstw", def.width},
+        {"dsth", def.height},
+        {"src_format", static_cast<int>(AV_PIX_FMT_RGB0)},
+        {"dst_format", static_cast<int>(AV_PIX_FMT_YUV420P)},
+        {"sws_flags", kExactScaling},
         // Chroma samples lie left (0) and midway between rows (128 of 256), as tagged above.
-        {"dst_h_chr_pos", 0}, {"dst_v_chr_pos", 128}})
+        {"dst_h_chr_pos", 0},
+        {"dst_v_chr_pos", 128}})
     av_opt_set_int(s, key, value, 0);
   if (const int code = sws_init_context(s, nullptr, nullptr); code < 0)
     return fail("no colour conversion", code);
   constexpr int kFullRange = 1, kVideoRange = 0, kUnity = 1 << 16;  // 16.16 fixed point
   const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
-  if (const int code = sws_setColorspaceDetails(s, bt709, kFullRange, bt709, kVideoRange, 0,
-                                                kUnity, kUnity); code < 0)
+  if (const int code =
+          sws_setColorspaceDetails(s, bt709, kFullRange, bt709, kVideoRange, 0, kUnity, kUnity);
+      code < 0)
     return fail("no BT.709 conversion", code);
   return {};
 }
@@ -128,8 +135,7 @@ Result<void> H264Encoder::encode(const Image& image) {
     return fail("no memory for a picture", code);
   const std::uint8_t* source[1] = {image.rgba.data()};
   const int stride[1] = {image.width * 4};
-  sws_scale(converter_.get(), source, stride, 0, image.height, picture_->data,
-            picture_->linesize);
+  sws_scale(converter_.get(), source, stride, 0, image.height, picture_->data, picture_->linesize);
   picture_->pts = frames_++;
   picture_->pict_type = AV_PICTURE_TYPE_NONE;
   if (const int code = avcodec_send_frame(codec_.get(), picture_.get()); code < 0)

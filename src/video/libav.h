@@ -34,5 +34,7 @@ inline constexpr int kExactScaling =
     SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_BITEXACT;
 
 /// libav would print to stderr by itself; what went wrong is in our Result.
-inline void silenceLibav() { av_log_set_level(AV_LOG_QUIET); }
+inline void silenceLibav() {
+  av_log_set_level(AV_LOG_QUIET);
+}
 }  // namespace swallowclip::video

@@ -22,7 +22,7 @@ constexpr int kFastestRate = 1000000;
 constexpr int kSlowestRate = 30;  // frames/s, Bonilha 2013
 
 // x264's own words, fastest first; it would print to stderr about others.
-const std::vector<std::string> kPresets = {"ultrafast", "superfast", "veryfast", "faster", "fast",
+const std::vector<std::string> kPresets = {"ultrafast", "superfast", "veryfast", "faster",  "fast",
                                            "medium",    "slow",      "slower",   "veryslow"};
 
 class Mp4Sink : public FrameSink {
@@ -129,8 +129,8 @@ Result<void> check(const Mp4Def& d) {
   };
   if (d.width < 2 || d.height < 2 || d.width % 2 || d.height % 2 || d.width > kLongestSide ||
       d.height > kLongestSide)
-    return refuse(fmt::format("a clip of {} x {} pixels; even sizes from 2 to {} expected",
-                              d.width, d.height, kLongestSide),
+    return refuse(fmt::format("a clip of {} x {} pixels; even sizes from 2 to {} expected", d.width,
+                              d.height, kLongestSide),
                   "Change width and height in the render preset.");
   if (d.rateDenominator < 1 || d.rateNumerator > kFastestRate ||
       d.rateNumerator / std::max(1, d.rateDenominator) < kSlowestRate)
@@ -144,9 +144,10 @@ Result<void> check(const Mp4Def& d) {
   }
   // High profile has no lossless mode, so crf 0 is out.
   if (d.crf < 1 || d.crf > 51 || d.keyframeEvery < 1 || d.queuedFrames < 1)
-    return refuse(fmt::format("crf {}, keyframe every {}, queue {}; 1 to 51 and at least 1 expected",
-                              d.crf, d.keyframeEvery, d.queuedFrames),
-                  "Change them in the render preset.");
+    return refuse(
+        fmt::format("crf {}, keyframe every {}, queue {}; 1 to 51 and at least 1 expected", d.crf,
+                    d.keyframeEvery, d.queuedFrames),
+        "Change them in the render preset.");
   return {};
 }
 }  // namespace

@@ -21,8 +21,9 @@ Result<std::string> encodePng(const Image& image) {
   if (image.width < 1 || image.height < 1 || image.width > kLongestSide ||
       image.height > kLongestSide ||
       image.rgba.size() != static_cast<std::size_t>(image.width) * image.height * 4)
-    return failure("picture", fmt::format("{} x {} pixels in {} bytes can't be a PNG", image.width,
-                                          image.height, image.rgba.size()),
+    return failure("picture",
+                   fmt::format("{} x {} pixels in {} bytes can't be a PNG", image.width,
+                               image.height, image.rgba.size()),
                    fmt::format("Ask for a size from 1 to {} pixels a side.", kLongestSide));
   png_image png{};
   png.version = PNG_IMAGE_VERSION;

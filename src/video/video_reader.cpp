@@ -53,8 +53,8 @@ Result<void> VideoReader::State::open() {
   info.width = codec->width;
   info.height = codec->height;
   if (info.width < 1 || info.height < 1 || info.width > kLongestSide || info.height > kLongestSide)
-    return refuse(fmt::format("is {} x {} pixels, 1 to {} a side expected", info.width,
-                              info.height, kLongestSide));
+    return refuse(fmt::format("is {} x {} pixels, 1 to {} a side expected", info.width, info.height,
+                              kLongestSide));
   if (s->avg_frame_rate.num > 0 && s->avg_frame_rate.den > 0) info.fps = av_q2d(s->avg_frame_rate);
   if (file->duration > 0) info.duration_s = static_cast<double>(file->duration) / AV_TIME_BASE;
   return {};
@@ -86,7 +86,9 @@ Result<Image> VideoReader::State::convert() {
 
 VideoReader::VideoReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
 VideoReader::~VideoReader() = default;
-const VideoInfo& VideoReader::info() const { return state_->info; }
+const VideoInfo& VideoReader::info() const {
+  return state_->info;
+}
 
 Result<std::unique_ptr<VideoReader>> VideoReader::open(const std::filesystem::path& path) {
   std::error_code ec;
@@ -106,10 +108,10 @@ Result<std::optional<VideoFrame>> VideoReader::next() {
       Result<Image> image = s.convert();
       if (!image) return std::unexpected(image.error());
       const std::int64_t stamp = s.picture->best_effort_timestamp;
-      const double time_s = stamp == AV_NOPTS_VALUE
-                                ? (s.info.fps > 0 ? s.decoded / s.info.fps : 0)
-                                : static_cast<double>(stamp) *
-                                      av_q2d(s.file->streams[s.stream]->time_base);
+      const double time_s =
+          stamp == AV_NOPTS_VALUE
+              ? (s.info.fps > 0 ? s.decoded / s.info.fps : 0)
+              : static_cast<double>(stamp) * av_q2d(s.file->streams[s.stream]->time_base);
       ++s.decoded;
       return VideoFrame{std::move(*image), time_s, s.picture->key_frame != 0};
     }

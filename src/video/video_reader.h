@@ -12,7 +12,7 @@ namespace swallowclip::video {
 
 struct VideoFrame {
   Image image;
-  double time_s = 0;      ///< from the file, first frame as the file says
+  double time_s = 0;  ///< from the file, first frame as the file says
   bool keyframe = false;
 };
 

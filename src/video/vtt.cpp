@@ -20,11 +20,16 @@ std::string timestamp(long long ms) {
 std::string cueText(const std::string& name) {
   std::string text;
   for (char c : name) {
-    if (c == '&') text += "&amp;";
-    else if (c == '<') text += "&lt;";
-    else if (c == '>') text += "&gt;";
-    else if (static_cast<unsigned char>(c) < 0x20) text += ' ';
-    else text += c;
+    if (c == '&')
+      text += "&amp;";
+    else if (c == '<')
+      text += "&lt;";
+    else if (c == '>')
+      text += "&gt;";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      text += ' ';
+    else
+      text += c;
   }
   return text;
 }
@@ -38,14 +43,16 @@ bool blank(const std::string& text) {
 Result<std::string> vttText(std::vector<Chapter> chapters, double duration_s,
                             const std::string& opening) {
   if (!(duration_s > 0 && duration_s <= kLongest_s))
-    return usageError("chapters", fmt::format("clip of {} s, more than 0 and up to {} expected",
-                                              duration_s, kLongest_s),
-                      "Give the clip's own duration.");
+    return usageError(
+        "chapters",
+        fmt::format("clip of {} s, more than 0 and up to {} expected", duration_s, kLongest_s),
+        "Give the clip's own duration.");
   for (const Chapter& c : chapters)
     if (!std::isfinite(c.start_s) || blank(c.name))
-      return usageError("chapters", fmt::format("\"{}\" at {} s: a name and a finite time expected",
-                                                c.name, c.start_s),
-                        "Leave out events that did not happen.");
+      return usageError(
+          "chapters",
+          fmt::format("\"{}\" at {} s: a name and a finite time expected", c.name, c.start_s),
+          "Leave out events that did not happen.");
   std::stable_sort(chapters.begin(), chapters.end(),
                    [](const Chapter& a, const Chapter& b) { return a.start_s < b.start_s; });
 
@@ -70,9 +77,9 @@ Result<std::string> vttText(std::vector<Chapter> chapters, double duration_s,
   }
   std::string vtt = "WEBVTT\n";
   for (std::size_t i = 0; i < cues.size(); ++i)
-    vtt += fmt::format("\n{}\n{} --> {}\n{}\n", i + 1, timestamp(cues[i].start_ms),
-                       timestamp(i + 1 < cues.size() ? cues[i + 1].start_ms : end_ms),
-                       cues[i].text);
+    vtt +=
+        fmt::format("\n{}\n{} --> {}\n{}\n", i + 1, timestamp(cues[i].start_ms),
+                    timestamp(i + 1 < cues.size() ? cues[i + 1].start_ms : end_ms), cues[i].text);
   return vtt;
 }
 

@@ -146,7 +146,9 @@ TEST_F(ImportScene, AScenesOwnMeshesCanBeImportedAgain) {
 
 // ---- real meshes: two adults outside the repository ----
 
-fs::path referenceFolder() { return test::referenceFolder() / "meshes"; }
+fs::path referenceFolder() {
+  return test::referenceFolder() / "meshes";
+}
 fs::path referenceMapping() {
   return fs::path(SWALLOWCLIP_SOURCE_DIR) / "tests/fixtures/reference_mapping.json";
 }

@@ -113,8 +113,9 @@ TEST(RigidParts, StitchingAddsNoVertices) {
   }
 }
 
-// Ranges: women's to men's mean of clinical-reference section 5, each 15 % wider. Jaw widths, palate
-// length and spine (ANS-PNS of the references: 53-55 mm; section 5: 41-49) are assumed ranges.
+// Ranges: women's to men's mean of clinical-reference section 5, each 15 % wider. Jaw widths,
+// palate length and spine (ANS-PNS of the references: 53-55 mm; section 5: 41-49) are assumed
+// ranges.
 TEST(RigidParts, DimensionsAreAdult) {
   const auto hyoid = box_mm("hyoid"), thyroid = box_mm("thyroid"), cricoid = box_mm("cricoid");
   expectWithin("hyoid greater horn span", hyoid.sizes().x(), 43.1 * .85, 52.6 * 1.15);

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "anatomy/anatomy_builder.h"
-#include "scene/anatomy_file.h"
 #include "reference.h"
+#include "scene/anatomy_file.h"
 #include "scene/json_reader.h"
 
 namespace swallowclip::anatomy {

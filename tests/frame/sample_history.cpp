@@ -40,14 +40,32 @@ std::vector<Vec3f> moved(const std::vector<Vec3f>& rest, float by, Noise& noise)
 History sampleHistory(int frames, int grid, int particles) {
   Noise noise;
   History h;
-  h.meta = {.version = kHistoryVersion, .scene = "adult", .swallow = "c04-s0", .bolus = "honey",
-            .solver = "dfsph", .program = "swallowclip 0.1.0",
-            .inputsSha256 = std::string(64, 'a'), .component = 4, .score = 0, .fps = 30,
-            .cue_s = 0.1, .cues_s = {0.1, 1.0 / 3}, .density_kgm3 = 1000, .viscosity_Pas = 1.0,
-            .particleSpacing_m = 0.002, .meanDensityError = 0.001, .maxDensityError = 0.03,
-            .shareAboveTenPercent = 1e-5, .maxSpeed_ms = 0.4};
-  StructureTrack jaw{.name = "mandible", .material = "bone", .rigid = true, .triangles = {},
-                     .rest = {}, .poses = {}, .positions = {}};
+  h.meta = {.version = kHistoryVersion,
+            .scene = "adult",
+            .swallow = "c04-s0",
+            .bolus = "honey",
+            .solver = "dfsph",
+            .program = "swallowclip 0.1.0",
+            .inputsSha256 = std::string(64, 'a'),
+            .component = 4,
+            .score = 0,
+            .fps = 30,
+            .cue_s = 0.1,
+            .cues_s = {0.1, 1.0 / 3},
+            .density_kgm3 = 1000,
+            .viscosity_Pas = 1.0,
+            .particleSpacing_m = 0.002,
+            .meanDensityError = 0.001,
+            .maxDensityError = 0.03,
+            .shareAboveTenPercent = 1e-5,
+            .maxSpeed_ms = 0.4};
+  StructureTrack jaw{.name = "mandible",
+                     .material = "bone",
+                     .rigid = true,
+                     .triangles = {},
+                     .rest = {},
+                     .poses = {},
+                     .positions = {}};
   makeGrid(grid, jaw.triangles, jaw.rest, noise);
   StructureTrack hyoid = jaw;
   hyoid.name = "hyoid";
@@ -68,8 +86,9 @@ History sampleHistory(int frames, int grid, int particles) {
     const double t = f / 30.0;
     h.time_s.push_back(t);
     for (StructureTrack* s : {&jaw, &hyoid})
-      s->poses.push_back({Quat(Eigen::AngleAxisd(0.1 * std::sin(t + 1), Vec3(1, 2, 3).normalized())),
-                          Vec3(0.001 * t, std::sin(t) / 300, -0.01)});
+      s->poses.push_back(
+          {Quat(Eigen::AngleAxisd(0.1 * std::sin(t + 1), Vec3(1, 2, 3).normalized())),
+           Vec3(0.001 * t, std::sin(t) / 300, -0.01)});
     const float by = 0.001f * static_cast<float>(f);
     tongue.positions.push_back(moved(tongue.rest, by, noise));
     h.skin.positions.push_back(moved(jaw.rest, by, noise));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A small history with every kind of content, and a folder that goes away.
 #pragma once
-#include <gtest/gtest.h>
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>

@@ -27,8 +27,8 @@ TEST(Exporter, ParticlesCsvReadsBack) {
   ASSERT_EQ(exportHistory(h, ExportFormat::csv, folder.path()).value_or(0), 2);
   const auto rows = parseCsv(*readFile(folder / "particles.csv"));
   ASSERT_EQ(rows.size(), 1u + 5 * 7);
-  EXPECT_EQ(rows[0], (std::vector<std::string>{"frame", "time_s", "id", "x_mm", "y_mm", "z_mm",
-                                               "region"}));
+  EXPECT_EQ(rows[0],
+            (std::vector<std::string>{"frame", "time_s", "id", "x_mm", "y_mm", "z_mm", "region"}));
   for (std::size_t r = 1; r < rows.size(); ++r) {
     ASSERT_EQ(rows[r].size(), 7u);
     const std::size_t f = std::stoul(rows[r][0]), i = std::stoul(rows[r][2]);

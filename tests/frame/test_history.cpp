@@ -8,7 +8,9 @@
 namespace swallowclip::frame {
 namespace {
 
-TEST(History, SampleIsSound) { EXPECT_EQ(sampleHistory().validate(), ""); }
+TEST(History, SampleIsSound) {
+  EXPECT_EQ(sampleHistory().validate(), "");
+}
 
 TEST(History, FindsByName) {
   const History h = sampleHistory();

@@ -137,8 +137,7 @@ TEST_F(HostileFile, WrongShapesAndTypes) {
   shaped("/structures/hyoid/pose", {5, 6}, H5T_NATIVE_FLOAT, "[5,7] expected");
   shaped("/structures/tongue/triangles", {18, 4}, H5T_NATIVE_INT, "[any,3] expected");
   shaped("/skin/u", {}, H5T_NATIVE_FLOAT, "[16] expected");
-  expectError([&](hid_t f) { replace(f, "/time_s", {0}, H5T_NATIVE_DOUBLE, nullptr); },
-              "0 frames");
+  expectError([&](hid_t f) { replace(f, "/time_s", {0}, H5T_NATIVE_DOUBLE, nullptr); }, "0 frames");
   expectError([&](hid_t f) { replace(f, "/bolus/id", {7}, H5T_NATIVE_INT, zeros.data()); },
               "entry 1 is 0, 1 expected");
 }
@@ -155,9 +154,8 @@ TEST_F(HostileFile, HugeSizesAreRefusedBeforeTheyAreAllocated) {
       },
       "too large");
   // Small enough to allocate, but never written.
-  expectError(
-      [&](hid_t f) { replace(f, "/time_s", {50000000}, H5T_NATIVE_DOUBLE, nullptr, 1024); },
-      "more than is stored");
+  expectError([&](hid_t f) { replace(f, "/time_s", {50000000}, H5T_NATIVE_DOUBLE, nullptr, 1024); },
+              "more than is stored");
 }
 
 TEST_F(HostileFile, UnsoundValues) {
@@ -165,12 +163,21 @@ TEST_F(HostileFile, UnsoundValues) {
   const std::vector<float> bad(5 * 16 * 3, nan);
   const std::vector<int> far(18 * 3, 1000);
   const std::vector<int> state(5 * 7, 250);
-  expectError([&](hid_t f) { replace(f, "/skin/positions", {5, 16, 3}, H5T_NATIVE_FLOAT,
-                                     bad.data()); }, "skin positions frame 0");
-  expectError([&](hid_t f) { replace(f, "/skin/triangles", {18, 3}, H5T_NATIVE_INT, far.data()); },
-              "skin triangles");
-  expectError([&](hid_t f) { replace(f, "/bolus/state", {5, 7}, H5T_NATIVE_INT, state.data()); },
-              "bolus state");
+  expectError(
+      [&](hid_t f) {
+        replace(f, "/skin/positions", {5, 16, 3}, H5T_NATIVE_FLOAT, bad.data());
+      },
+      "skin positions frame 0");
+  expectError(
+      [&](hid_t f) {
+        replace(f, "/skin/triangles", {18, 3}, H5T_NATIVE_INT, far.data());
+      },
+      "skin triangles");
+  expectError(
+      [&](hid_t f) {
+        replace(f, "/bolus/state", {5, 7}, H5T_NATIVE_INT, state.data());
+      },
+      "bolus state");
 }
 
 TEST_F(HostileFile, LinksOutOfTheFileAreNotFollowed) {

@@ -72,16 +72,18 @@ TEST_P(Motion, TongueKeepsItsVolumeAndWallsNeverCross) {
   for (int k = 0; k < baked.sequence.frames(); ++k) {
     const double v = volume(tongue.frames[k], tongue.triangles);
     ASSERT_NEAR(v / adult().soft.tongueVolume_m3(), 1, 0.02) << "frame " << k;
-    const auto hit = airway::maxInterpenetration(baked.skin[k], adult().lumen.skin().triangles, pool);
+    const auto hit =
+        airway::maxInterpenetration(baked.skin[k], adult().lumen.skin().triangles, pool);
     worst = std::max(worst, hit.depth_m);
-    EXPECT_LE(hit.depth_m, 0.5e-3) << "frame " << k << ", vertex " << hit.vertex << ", s "
-                                   << adult().lumen.skin().s_m[hit.vertex] << ", u " << adult().lumen.skin().u[hit.vertex];
+    EXPECT_LE(hit.depth_m, 0.5e-3)
+        << "frame " << k << ", vertex " << hit.vertex << ", s "
+        << adult().lumen.skin().s_m[hit.vertex] << ", u " << adult().lumen.skin().u[hit.vertex];
   }
   RecordProperty("deepest_mm", fmt::format("{:.3f}", worst * 1e3));
 }
 
-// Room of the first open stretch of the main lumen behind the contact front: where the bolus is. A row
-// of the lattice is shut when no particle could be in it (gap below 0.5 mm everywhere).
+// Room of the first open stretch of the main lumen behind the contact front: where the bolus is. A
+// row of the lattice is shut when no particle could be in it (gap below 0.5 mm everywhere).
 double pocket_m3(const anatomy::Lumen& lumen, const anatomy::LumenPose& pose, double end_m) {
   const anatomy::LumenSheets sheets = lumen.evaluate(pose);
   const auto open = [&](int r) {

@@ -23,8 +23,8 @@ TEST_F(ImportedScene, BonesFollowTheSwallowAndAreDrawnInFourViews) {
   options.bolus = "none";
   const auto history = simulateSwallow(options, 0, 5, notes);
   ASSERT_TRUE(history) << history.error().text();
-  for (const auto& [name, least_m] : {std::pair{"hyoid", 10e-3}, std::pair{"thyroid", 15e-3},
-                                      std::pair{"mandible", 0.0}}) {
+  for (const auto& [name, least_m] :
+       {std::pair{"hyoid", 10e-3}, std::pair{"thyroid", 15e-3}, std::pair{"mandible", 0.0}}) {
     const auto* track = history->find(name);
     ASSERT_NE(track, nullptr) << name;
     double farthest = 0;

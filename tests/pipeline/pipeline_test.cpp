@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The whole program on the first instants of a swallow.
-#include "run.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/simulation.h"
+#include "run.h"
 
 namespace swallowclip::pipeline {
 namespace {

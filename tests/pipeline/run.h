@@ -23,8 +23,8 @@ class Notes : public Progress {
 class Run : public testing::Test {
  protected:
   Run() {
-    folder = std::filesystem::temp_directory_path() /
-             ("swallowclip-run-" + std::to_string(getpid()));
+    folder =
+        std::filesystem::temp_directory_path() / ("swallowclip-run-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
     options.data = SWALLOWCLIP_SOURCE_DIR;
     options.component = 4;
@@ -44,8 +44,7 @@ class Run : public testing::Test {
   }
   /// The small preset at a thumbnail's size.
   void shrink() {
-    std::string text =
-        readFile(options.data / "render_presets/small.json").value_or(std::string());
+    std::string text = readFile(options.data / "render_presets/small.json").value_or(std::string());
     for (const auto& [from, to] : {std::pair{"\"width_px\": 854", "\"width_px\": 192"},
                                    std::pair{"\"height_px\": 480", "\"height_px\": 108"}}) {
       const auto at = text.find(from);

@@ -82,7 +82,8 @@ TEST_F(Viscosity, ThinLeavesTheMouthBeforeHoneyBeforeAThickerOne) {
   std::ofstream(thick) << R"({"description": "2.5 Pa.s", "density_kgm3": 1000,
                              "rheology": "newtonian", "viscosity_Pas": 2.5})";
   double before = 0;
-  for (const std::string& bolus : {std::string("thin"), std::string("thesis-honey"), thick.string()}) {
+  for (const std::string& bolus :
+       {std::string("thin"), std::string("thesis-honey"), thick.string()}) {
     const auto run = swallow(options, 0, bolus);
     ASSERT_TRUE(run);
     const double left_s = run->value("t50_past_ramus");

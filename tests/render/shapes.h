@@ -33,7 +33,9 @@ inline frame::StructureTrack ellipsoid(const std::string& name, const std::strin
     }
   s.rest.push_back(centre - Vec3f(0, 0, radii.z()));
   const int last = static_cast<int>(s.rest.size()) - 1;
-  const auto at = [&](int i, int k) { return i == 0 ? 0 : i == n ? last : 1 + (i - 1) * m + k % m; };
+  const auto at = [&](int i, int k) {
+    return i == 0 ? 0 : i == n ? last : 1 + (i - 1) * m + k % m;
+  };
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < m; ++k) {
       const int a = at(i, k), b = at(i + 1, k), c = at(i + 1, k + 1), d = at(i, k + 1);
@@ -49,8 +51,8 @@ inline frame::StructureTrack box(const std::string& name, const Vec3f& low, cons
   s.material = "bone";
   s.poses.assign(1, Pose{});
   for (int i = 0; i < 8; ++i)
-    s.rest.push_back({i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(),
-                      i & 4 ? high.z() : low.z()});
+    s.rest.push_back(
+        {i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(), i & 4 ? high.z() : low.z()});
   for (const auto& q : {std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}, std::array{0, 1, 5, 4},
                         std::array{2, 6, 7, 3}, std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}}) {
     s.triangles.push_back({q[0], q[1], q[2]});
@@ -103,8 +105,8 @@ inline std::vector<Vec3f> lattice(const Vec3f& centre, const Vec3f& radii, float
   for (int x = -n.x(); x <= n.x(); ++x)
     for (int y = -n.y(); y <= n.y(); ++y)
       for (int z = -n.z(); z <= n.z(); ++z) {
-        const Vec3f p = dx * Vec3f(static_cast<float>(x), static_cast<float>(y),
-                                   static_cast<float>(z));
+        const Vec3f p =
+            dx * Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
         if (p.cwiseQuotient(radii).squaredNorm() <= 1) out.push_back(centre + p);
       }
   return out;

@@ -63,8 +63,8 @@ TEST(FluidSurface, FilmLiesFlatOnItsWall) {
   std::vector<FluidParticle> film;
   for (int i = 0; i < 6; ++i)
     for (int k = 0; k < 6; ++k)
-      film.push_back({Vec3f(kDx * static_cast<float>(i), kDx * static_cast<float>(k), 0),
-                      Vec3f(0, 0, 1)});
+      film.push_back(
+          {Vec3f(kDx * static_cast<float>(i), kDx * static_cast<float>(k), 0), Vec3f(0, 0, 1)});
   const FluidSurface s = fluidSurface(film, {});
   float thickness = 0;
   for (const Vec3f& x : s.positions) thickness = std::max(thickness, std::abs(x.z()));
@@ -73,7 +73,9 @@ TEST(FluidSurface, FilmLiesFlatOnItsWall) {
   EXPECT_EQ(openEdges(s), 0);
 }
 
-TEST(FluidSurface, NothingFromNothing) { EXPECT_TRUE(fluidSurface({}, {}).triangles.empty()); }
+TEST(FluidSurface, NothingFromNothing) {
+  EXPECT_TRUE(fluidSurface({}, {}).triangles.empty());
+}
 
 TEST(FluidSurface, DoesNotCrawlWithTheGrid) {
   // the same drop half a cell further must keep its volume: no popping while the bolus moves

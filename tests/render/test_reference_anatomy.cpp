@@ -54,8 +54,8 @@ TEST(ReferenceAnatomy, TongueSectionFillsItsArea) {
     section += image->rgba[i + 1] > image->rgba[i] + 40;
     surface += image->rgba[i] > image->rgba[i + 1] + 40;
   }
-  EXPECT_GT(section, 10000);          // about 30 cm^2 at 5.8 pixels per mm^2
-  EXPECT_GT(section, 3 * surface);    // little of the far side stands out behind it
+  EXPECT_GT(section, 10000);        // about 30 cm^2 at 5.8 pixels per mm^2
+  EXPECT_GT(section, 3 * surface);  // little of the far side stands out behind it
 }
 }  // namespace
 }  // namespace swallowclip::render

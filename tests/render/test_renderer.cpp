@@ -42,8 +42,8 @@ Area lit(const Image& image) {
 TEST(Renderer, FlatLitSphereHasItsColourAndArea) {
   RenderPreset p = test::flatPreset(320, 200);
   p.msaa = 1;
-  const auto h = test::still(
-      {test::ellipsoid("ball", "bone", {0, 0, 0}, Vec3f::Constant(0.03f), 64)});
+  const auto h =
+      test::still({test::ellipsoid("ball", "bone", {0, 0, 0}, Vec3f::Constant(0.03f), 64)});
   const Area a = lit(picture(p, h, "side"));
   const double radius_px = 0.03 / 0.1 * 200;
   EXPECT_NEAR(a.pixels / (kPi * radius_px * radius_px), 1.0, 0.01);
@@ -60,8 +60,8 @@ TEST(Renderer, LambertSphereHasTheKnownMean) {
   p.light.key.colour_srgb = Colour(1, 1, 1);
   p.light.key.intensity = 1;
   p.fallback.baseColour_srgb = Colour(1, 1, 1);
-  const auto h = test::still(
-      {test::ellipsoid("ball", "bone", {0, 0, 0}, Vec3f::Constant(0.03f), 64)});
+  const auto h =
+      test::still({test::ellipsoid("ball", "bone", {0, 0, 0}, Vec3f::Constant(0.03f), 64)});
   const Image image = picture(p, h, "side");
   double sum = 0;
   for (int y = 0; y < image.height; ++y)
@@ -79,7 +79,8 @@ TEST(Renderer, CappedCutOfACubeIsItsSectionColourOverTheExactArea) {
     p.msaa = msaa;
     p.views["side"].cuts.push_back({});
     // 40 x 50 mm at 2 px/mm: edges fall on pixel borders
-    const auto h = test::still({test::box("cube", {-0.02f, -0.02f, -0.03f}, {0.02f, 0.02f, 0.02f})});
+    const auto h =
+        test::still({test::box("cube", {-0.02f, -0.02f, -0.03f}, {0.02f, 0.02f, 0.02f})});
     const Area a = lit(picture(p, h, "side"));
     EXPECT_EQ(a.pixels, 80 * 100) << "msaa " << msaa;
     const double expected[3] = {0.2 * 255, 0.6 * 255, 0.3 * 255};
@@ -104,10 +105,11 @@ TEST(Renderer, HollowSectionStaysHollow) {
 }
 
 frame::History busyScene(int n) {
-  auto h = test::still({test::ellipsoid("tongue", "muscle", {0, -0.01f, -0.03f}, {0.025f, 0.03f, 0.02f}, n),
-                        test::ellipsoid("wall", "mucosa", {0, 0.035f, -0.05f}, {0.02f, 0.004f, 0.06f}, n),
-                        test::ellipsoid("cricoid", "cartilage", {0, 0.02f, -0.1f}, {0.012f, 0.01f, 0.01f}, n),
-                        test::ellipsoid("mandible", "bone", {0, -0.05f, -0.05f}, {0.01f, 0.01f, 0.02f}, n)});
+  auto h = test::still(
+      {test::ellipsoid("tongue", "muscle", {0, -0.01f, -0.03f}, {0.025f, 0.03f, 0.02f}, n),
+       test::ellipsoid("wall", "mucosa", {0, 0.035f, -0.05f}, {0.02f, 0.004f, 0.06f}, n),
+       test::ellipsoid("cricoid", "cartilage", {0, 0.02f, -0.1f}, {0.012f, 0.01f, 0.01f}, n),
+       test::ellipsoid("mandible", "bone", {0, -0.05f, -0.05f}, {0.01f, 0.01f, 0.02f}, n)});
   h.bolus.particleVolume_m3 = 8e-9;
   h.bolus.positions = {test::lattice({0, -0.01f, -0.008f}, {0.012f, 0.02f, 0.006f}, 2e-3f)};
   h.bolus.state = {std::vector<frame::ParticleState>(h.bolus.positions[0].size())};
@@ -156,8 +158,8 @@ TEST(Renderer, FluoroscopyFollowsBeerAndLambert) {
   p.views["side"].style = Style::fluoro;
   const auto h = test::still({test::box("cube", Vec3f::Constant(-0.02f), Vec3f::Constant(0.02f))});
   const Image image = picture(p, h, "side");
-  EXPECT_NEAR(image.row(5)[4 * 5], 0.72 * 255, 2);                       // beside it
-  EXPECT_NEAR(image.row(100)[4 * 100], (0.72 - 0.30 * 1.6) * 255, 2);    // through it
+  EXPECT_NEAR(image.row(5)[4 * 5], 0.72 * 255, 2);                     // beside it
+  EXPECT_NEAR(image.row(100)[4 * 100], (0.72 - 0.30 * 1.6) * 255, 2);  // through it
   p.fluoro.noise = 0.02f;
   EXPECT_EQ(picture(p, h, "side").rgba, picture(p, h, "side").rgba);
 }
@@ -229,7 +231,9 @@ TEST(Renderer, FrameCost) {
   const int frames = 5;
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < frames; ++i) ASSERT_TRUE(r->draw(h, 0, "oblique", {}).has_value());
-  const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() / frames;
+  const double ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() /
+      frames;
   std::size_t triangles = 0;
   for (const auto& s : h.structures) triangles += s.triangles.size();
   RecordProperty("ms_per_frame", static_cast<int>(ms));

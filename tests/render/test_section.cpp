@@ -10,8 +10,10 @@ namespace {
 double fanArea(const std::vector<Vertex>& fan, const Vec3f& normal) {
   double area = 0;
   for (std::size_t i = 0; i < fan.size(); i += 3)
-    area += 0.5 * normal.dot((fan[i + 1].position - fan[i].position)
-                                 .cross(fan[i + 2].position - fan[i].position));
+    area +=
+        0.5 *
+        normal.dot(
+            (fan[i + 1].position - fan[i].position).cross(fan[i + 2].position - fan[i].position));
   return area;
 }
 

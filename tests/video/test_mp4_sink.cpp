@@ -80,9 +80,14 @@ TEST(Mp4Sink, SameFramesSameBytes) {
 
 TEST(Mp4Sink, ColoursComeBack) {
   const Scratch folder;
-  const std::array<std::array<int, 3>, 9> patches = {{{255, 0, 0}, {0, 255, 0}, {0, 0, 255},
-                                                      {255, 255, 255}, {0, 0, 0}, {128, 128, 128},
-                                                      {200, 120, 110}, {30, 90, 160},
+  const std::array<std::array<int, 3>, 9> patches = {{{255, 0, 0},
+                                                      {0, 255, 0},
+                                                      {0, 0, 255},
+                                                      {255, 255, 255},
+                                                      {0, 0, 0},
+                                                      {128, 128, 128},
+                                                      {200, 120, 110},
+                                                      {30, 90, 160},
                                                       {240, 200, 60}}};
   Mp4Def def = smallDef(folder / "clip.mp4");
   auto sink = makeMp4Sink(def);
@@ -101,8 +106,7 @@ TEST(Mp4Sink, ColoursComeBack) {
     auto next = (*reader)->next();
     ASSERT_TRUE(next && *next);
     const std::uint8_t* p = (*next)->image.row(90) + 4 * 160;
-    for (std::size_t k = 0; k < 3; ++k)
-      worst = std::max(worst, std::abs(p[k] - patches[f / 8][k]));
+    for (std::size_t k = 0; k < 3; ++k) worst = std::max(worst, std::abs(p[k] - patches[f / 8][k]));
   }
   RecordProperty("worst_level", worst);
   EXPECT_LE(worst, kTolerance);

@@ -22,8 +22,7 @@ TEST(Vtt, EventsAtOnceBeforeAndAfter) {
             "\n1\n00:00:00.000 --> 00:00:01.000\nB\n"
             "\n2\n00:00:01.000 --> 00:00:02.000\nC, D\n");
   EXPECT_EQ(*vttText({{"first", 0}}, 1), "WEBVTT\n\n1\n00:00:00.000 --> 00:00:01.000\nfirst\n");
-  EXPECT_EQ(*vttText({}, 3661.5, "All"),
-            "WEBVTT\n\n1\n00:00:00.000 --> 01:01:01.500\nAll\n");
+  EXPECT_EQ(*vttText({}, 3661.5, "All"), "WEBVTT\n\n1\n00:00:00.000 --> 01:01:01.500\nAll\n");
 }
 
 TEST(Vtt, NamesCanNotBreakTheFile) {

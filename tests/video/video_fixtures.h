@@ -61,9 +61,9 @@ inline void put(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 inline std::string ffprobe(const std::string& entries, const std::filesystem::path& file) {
-  const std::string command = fmt::format(
-      "ffprobe -v error -select_streams v:0 -show_entries {} -of compact '{}' 2>&1", entries,
-      file.string());
+  const std::string command =
+      fmt::format("ffprobe -v error -select_streams v:0 -show_entries {} -of compact '{}' 2>&1",
+                  entries, file.string());
   std::string text;
   FILE* pipe = ::popen(command.c_str(), "r");
   for (int c; pipe && (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
