@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "render/gl.h"  // before osmesa.h, which includes GL without prototypes
+#include "render/gl.h"
 
 namespace swallowclip::render {
 namespace {
