@@ -26,6 +26,7 @@ constexpr double kInfeasibleFor_s = 0.02;   // DESIGN 5
 // At its cap the density solve counts as failing only when it leaves more than this, assumed
 // (0.2 to 1 %): slow convergence of thin layers is harmless.
 constexpr double kCapError = 0.005;
+constexpr double kCrossing_m = 0.5e-3;  // sheets of the skin may cross by this much (motion tests)
 }  // namespace
 
 const char* name(SolverKind kind) {
@@ -148,7 +149,7 @@ Result<RelaxReport> Solver::relax(double t_s, double longest_s) {
 std::string Solver::Impl::wallsAt(int i) const {
   if (motion->wall.empty() || i < 0 || contacts[i].empty()) return "walls unnamed";
   auto label = [&](const Contact& c) {
-    return static_cast<int>(motion->wall[motion->triangles[c.triangle][0]]);
+    return static_cast<int>(motion->wall[wallTriangles[c.triangle][0]]);
   };
   const int facing = facingContact(contacts[i]);
   if (facing < 0) return fmt::format("wall {}", label(contacts[i][0]));
@@ -179,18 +180,18 @@ Result<void> Solver::Impl::checkStep(const Substep& s, double dt_s) {
                  "open these walls later, close them more slowly, or hold a smaller bolus");
 }
 
+// Outside the skin, every branch included, by more than its sheets may cross each other.
+bool Solver::Impl::escaped(const Vec3& p) const {
+  if (columns.inside(p) || windingNumber(p, wallPositions, motion->triangles) >= 0.5) return false;
+  return nearestPoint(p, wallPositions, motion->triangles).distance_m > kCrossing_m;
+}
+
 void Solver::Impl::finishFrame() {
   updatePath(true);
+  columns.build(motion->triangles, wallPositions);
   escapedNow = 0;
-  for (std::size_t i = 0; i < active.size(); ++i) {
-    if (particles.state[i] == State::swallowed) continue;
-    // a wall close by tells the side; the full winding number only for those in doubt
-    const bool doubtful = contacts[i].empty()
-                              ? walls[i].nearestTriangle < 0 || walls[i].lambda > 0.5
-                              : contacts[i][0].distance_m < 0;
-    if (!doubtful) continue;
-    escapedNow += windingNumber(particles.positions[i], wallPositions, motion->triangles) < 0.5;
-  }
+  for (std::size_t i = 0; i < active.size(); ++i)
+    escapedNow += particles.state[i] != State::swallowed && escaped(particles.positions[i]);
   stats.escaped = std::max(stats.escaped, escapedNow);
 }
 

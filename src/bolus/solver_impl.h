@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "bolus/closed_walls.h"
 #include "bolus/contact_response.h"
 #include "bolus/projection.h"
 #include "bolus/solver.h"
@@ -32,7 +33,8 @@ struct Solver::Impl {
   void finishFrame();  ///< path coordinates of all particles, escape check
 
   void evaluateWalls(double t_s);
-  std::span<const std::uint8_t> shutBranches(double t_s);
+  void shutBranches(double t_s);
+  bool escaped(const Vec3& p) const;
   int pushInside();
   void keepOutOfSlits(int i);
   void updateStates();
@@ -63,9 +65,13 @@ struct Solver::Impl {
   Projection projection;
   Viscosity viscosity;
 
-  std::array<bool, 3> shutBefore{};   // [branch]
-  std::vector<std::uint8_t> skipped;  // [triangle] of shut branches
-  double filmDrainage_s = 0;          // speed of a draining film per acceleration along the wall
+  // The skin's triangles, then the caps of its two branches (made when one first shuts).
+  std::vector<Triangle> wallTriangles;
+  std::array<std::pair<int, int>, 3> caps{};  // [branch] first and end in wallTriangles
+  std::array<bool, 3> shutBefore{};           // [branch]
+  std::vector<std::uint8_t> skipped;          // [triangle] no wall now
+  ColumnIndex columns;
+  double filmDrainage_s = 0;  // speed of a draining film per acceleration along the wall
   double time_s = 0;
   bool frozen = false;  // walls stand still (settling)
   double settlingViscosity_Pas = 0;

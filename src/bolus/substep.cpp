@@ -68,27 +68,41 @@ void Solver::Impl::evaluateWalls(double t_s) {
     low = low.cwiseMin(particles.positions[i]);
     high = high.cwiseMax(particles.positions[i]);
   }
-  field.build(motion->triangles, wallPositions, wallVelocities, low, high, shutBranches(t_s));
+  shutBranches(t_s);
+  field.build(wallTriangles, wallPositions, wallVelocities, low, high, skipped);
 }
 
-// Triangles of branches that are shut and hold no fluid, [triangle] or empty.
-std::span<const std::uint8_t> Solver::Impl::shutBranches(double t_s) {
-  if (!motion->sealed || motion->branch.empty()) return {};
+// A branch shut lip to lip and empty is no wall: the tube goes, a cap closes the slit it leaves.
+void Solver::Impl::shutBranches(double t_s) {
+  if (wallTriangles.empty()) wallTriangles = motion->triangles;
+  if (!motion->sealed || motion->branch.empty()) return;
   std::array<bool, 3> shut{};
   for (int b : {1, 2}) {
     shut[b] = motion->sealed(t_s, b);
     for (std::size_t i = 0; shut[b] && i < particles.branch.size(); ++i)
       shut[b] = particles.state[i] == State::swallowed || particles.branch[i] != b;
   }
-  if (!shut[1] && !shut[2]) return {};
-  if (shut != shutBefore || skipped.empty()) {
-    skipped.assign(motion->triangles.size(), 0);
-    for (std::size_t k = 0; k < skipped.size(); ++k)
+  if (shut == shutBefore) return;
+  shutBefore = shut;
+  const std::size_t own = motion->triangles.size();
+  const auto markTubes = [&](auto&& taken) {
+    for (std::size_t k = 0; k < own; ++k)
       for (int v : motion->triangles[k])
-        if (const int b = motion->branch[v]; b != 0 && shut[(b - 1) % 2 + 1]) skipped[k] = 1;
-    shutBefore = shut;
-  }
-  return skipped;
+        if (const int b = motion->branch[v]; b != 0 && taken((b - 1) % 2 + 1)) skipped[k] = 1;
+  };
+  for (int b : {1, 2})
+    if (shut[b] && caps[b].first == caps[b].second) {
+      skipped.assign(own, 0);
+      markTubes([&](int branch) { return branch == b; });
+      const std::vector<Triangle> cap = capHoles(motion->triangles, skipped, wallPositions);
+      caps[b].first = static_cast<int>(wallTriangles.size());
+      wallTriangles.insert(wallTriangles.end(), cap.begin(), cap.end());
+      caps[b].second = static_cast<int>(wallTriangles.size());
+    }
+  skipped.assign(wallTriangles.size(), 0);
+  markTubes([&](int branch) { return shut[branch]; });
+  for (int b : {1, 2})
+    if (!shut[b]) std::fill(&skipped[0] + caps[b].first, &skipped[0] + caps[b].second, 1);
 }
 
 int Solver::Impl::pushInside() {
@@ -174,7 +188,7 @@ void Solver::Impl::updatePath(bool all) {
       const Vec3& p = particles.positions[i];
       if (k < 0 && !all && particles.s_m[i] < nearEnd) continue;
       if (k < 0) k = nearestPoint(p, wallPositions, m.triangles).triangle;
-      const Triangle& t = m.triangles[k];
+      const Triangle& t = wallTriangles[k];
       const Vec3 bary =
           closestBarycentric(p, wallPositions[t[0]], wallPositions[t[1]], wallPositions[t[2]]);
       if (!m.s_m.empty()) particles.s_m[i] = Vec3(m.s_m[t[0]], m.s_m[t[1]], m.s_m[t[2]]).dot(bary);

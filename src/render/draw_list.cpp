@@ -117,24 +117,32 @@ void addStructure(DrawList& list, const frame::StructureTrack& track, int frame,
   (item.opacity < 1 ? list.ghost : list.solid).push_back(std::move(item));
 }
 
-// Normal of the skin vertex nearest to each film particle, into the lumen.
-void setWallNormals(const frame::SkinTrack& skin, int frame, std::vector<FluidParticle>& film) {
-  if (film.empty() || skin.positions.empty()) return;
-  const std::vector<Vec3f>& p = skin.positions[frame];
-  std::vector<Vec3f> normal(p.size(), Vec3f::Zero());
+LumenWall lumenWall(const frame::SkinTrack& skin, int frame) {
+  LumenWall w;
+  if (skin.positions.empty()) return w;
+  w.positions = skin.positions[frame];
+  w.normals.assign(w.positions.size(), Vec3f::Zero());
   for (const Triangle& t : skin.triangles) {
-    const Vec3f n = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
-    for (int v : t) normal[v] += n;
+    const Vec3f& a = w.positions[t[0]];
+    const Vec3f n = (w.positions[t[1]] - a).cross(w.positions[t[2]] - a);
+    for (int v : t) w.normals[v] += n;
   }
+  for (Vec3f& n : w.normals) n = n.norm() > 0 ? Vec3f(n.normalized()) : Vec3f(0, 0, 1);
+  return w;
+}
+
+// A film particle lies on the skin vertex nearest to it.
+void setWallNormals(const LumenWall& wall, std::vector<FluidParticle>& film) {
+  if (wall.positions.empty()) return;
   for (FluidParticle& f : film) {
     std::size_t best = 0;
     float bestDistance2 = 1e9f;
-    for (std::size_t i = 0; i < p.size(); ++i)
-      if (const float d2 = (p[i] - f.position).squaredNorm(); d2 < bestDistance2) {
+    for (std::size_t i = 0; i < wall.positions.size(); ++i)
+      if (const float d2 = (wall.positions[i] - f.position).squaredNorm(); d2 < bestDistance2) {
         bestDistance2 = d2;
         best = i;
       }
-    if (normal[best].norm() > 0) f.wallNormal = -normal[best].normalized();
+    f.wallNormal = -wall.normals[best];
   }
 }
 
@@ -149,12 +157,14 @@ void addBolus(DrawList& list, const frame::History& h, int frame, const RenderPr
     if (state == frame::ParticleState::fluid) particles.push_back({positions[i]});
     if (state == frame::ParticleState::film) film.push_back({positions[i]});
   }
-  setWallNormals(h.skin, frame, film);
+  const LumenWall wall = lumenWall(h.skin, frame);
+  setWallNormals(wall, film);
   particles.insert(particles.end(), film.begin(), film.end());
   FluidSurfaceDef def;
   if (bolus.particleVolume_m3 > 0) def.spacing_m = std::cbrt(bolus.particleVolume_m3);
   if (h.meta.particleSpacing_m > 0) def.spacing_m = h.meta.particleSpacing_m;
-  const FluidSurface s = fluidSurface(particles, def);
+  FluidSurface s = fluidSurface(particles, def);
+  keepWithin(s, wall, 1.5 * def.spacing_m);
   if (s.triangles.empty()) return;
   DrawItem item;
   item.name = "bolus";

@@ -64,8 +64,9 @@ class Neighbours {
 
 // Axes of a flat disc on a wall.
 Blob filmBlob(const Vec3f& centre, const Vec3f& normal, float thickness, const Neighbours& near) {
-  // a sheet's surface lies at 0.47 of its support: (1 - q^2)^3 = level 0.42 / 0.9
-  const float reach = 1.5f * kSupport;
+  // A sheet's surface lies at 0.47 of its support: (1 - q^2)^3 = level 0.42 / 0.9. With this reach
+  // a lone disc has the volume of its particle.
+  const float reach = 1.2f * kSupport;
   const Vec3f radii(thickness / 0.47f, reach, reach);
   const Vec3f t = normal.unitOrthogonal();
   Eigen::Matrix3f axes;
@@ -244,5 +245,27 @@ FluidSurface fluidSurface(std::span<const FluidParticle> particles, const FluidS
     x *= dx;
   }
   return s;
+}
+
+void keepWithin(FluidSurface& s, const LumenWall& wall, double reach_m) {
+  constexpr float kAside2_m2 = 1.5e-3f * 1.5e-3f;  // farther aside than a skin edge: another place
+  constexpr float kClosedGap_m =
+      0.4e-3f;  // sheets this near count as one; the scene closes to less
+  const float reach = static_cast<float>(reach_m);
+  const Neighbours near(wall.positions, reach);
+  for (Vec3f& x : s.positions) {
+    float outside2 = reach * reach, inside = reach;
+    int through = -1;
+    near.around(x, [&](int j, float d2) {
+      const float height = wall.normals[j].dot(x - wall.positions[j]);
+      if (d2 - height * height > kAside2_m2) return;
+      if (height < 0)
+        inside = std::min(inside, -height);
+      else if (d2 < outside2)
+        outside2 = d2, through = j;
+    });
+    if (through < 0 || std::sqrt(outside2) > inside + kClosedGap_m) continue;
+    x -= wall.normals[through].dot(x - wall.positions[through]) * wall.normals[through];
+  }
 }
 }  // namespace swallowclip::render

@@ -26,9 +26,18 @@ struct FluidSurfaceDef {
   double smoothing =
       0.4;              ///< pull of a centre to its neighbours' mean; Yu & Turk 0.9, which shrinks
   double level = 0.42;  ///< of the summed field; a 5 mL ball keeps its volume (tested)
-  double filmThickness = 0.35;  ///< half thickness of a film disc in dx; assumed 0.2..0.5
+  double filmThickness = 0.25;  ///< half thickness of a film disc in dx; assumed 0.2..0.5
 };
 
 /// Empty surface for no particles. Deterministic: particles are summed in their order.
 FluidSurface fluidSurface(std::span<const FluidParticle> particles, const FluidSurfaceDef& def);
+
+/// Skin of the lumen at one moment: vertices and unit normals out of the lumen.
+struct LumenWall {
+  std::vector<Vec3f> positions, normals;
+};
+
+/// Brings vertices that a blob's breadth has carried through a wall back to it: the particles are
+/// inside, so must be what is drawn. `reach_m`: how far outside a vertex may be.
+void keepWithin(FluidSurface& surface, const LumenWall& wall, double reach_m);
 }  // namespace swallowclip::render

@@ -51,7 +51,7 @@ std::optional<Conservation> countParticles(const frame::History& history) {
   if (!history.ledger.empty()) {
     c.particlesStart = history.ledger.front().start;
     // The solver knows best how many it lost; they have no place of their own in the track.
-    c.escaped = history.ledger.back().escaped;
+    for (const auto& row : history.ledger) c.escaped = std::max(c.escaped, row.escaped);
     c.particlesEnd = history.ledger.back().fluid + history.ledger.back().film;
   }
   const double start = c.particlesStart > 0 ? c.particlesStart : 1;

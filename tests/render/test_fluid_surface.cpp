@@ -73,6 +73,33 @@ TEST(FluidSurface, FilmLiesFlatOnItsWall) {
   EXPECT_EQ(openEdges(s), 0);
 }
 
+TEST(FluidSurface, ALoneFilmDiscHasAboutItsParticlesVolume) {
+  const std::vector<FluidParticle> one{{Vec3f(0, 0, 0), Vec3f(0, 0, 1)}};
+  const double ratio = volumeOf(fluidSurface(one, {})) / (kDx * kDx * kDx);
+  EXPECT_GT(ratio, 0.5);
+  EXPECT_LT(ratio, 1.5);
+}
+
+TEST(KeepWithin, NothingIsDrawnBehindAWall) {
+  // a slab of fluid on a floor: its blobs bulge through the plane z = 0 until they are brought back
+  FluidSurface s =
+      fluidSurface(freeParticles(test::lattice({0, 0, 0.0025f}, {0.01f, 0.01f, 0.0025f}, kDx)), {});
+  LumenWall floor;
+  for (int i = -20; i < 20; ++i)
+    for (int k = -20; k < 20; ++k) {
+      floor.positions.push_back(1e-3f * Vec3f(static_cast<float>(i), static_cast<float>(k), 0));
+      floor.normals.push_back(Vec3f(0, 0, -1));
+    }
+  const auto lowest = [&] {
+    float z = 1;
+    for (const Vec3f& x : s.positions) z = std::min(z, x.z());
+    return z;
+  };
+  EXPECT_LT(lowest(), -0.3e-3f);
+  keepWithin(s, floor, 1.5 * kDx);
+  EXPECT_GT(lowest(), -1e-6f);
+}
+
 TEST(FluidSurface, NothingFromNothing) {
   EXPECT_TRUE(fluidSurface({}, {}).triangles.empty());
 }
