@@ -47,8 +47,10 @@ void Projection::resize(int n) {
   acceleration_.assign(n, Vec3::Zero());
 }
 
-void Projection::prepare(const Flow& f) {
+void Projection::prepare(const Flow& f, std::span<const double> wallDrag) {
   const Neighbours& nb = f.neighbours;
+  mobility_.assign(diagonal_.size(), 1.0);
+  for (std::size_t i = 0; i < wallDrag.size(); ++i) mobility_[i] = 1 / (1 + wallDrag[i]);
   f.pool.forChunks(static_cast<int>(diagonal_.size()), kSweepChunk, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       if (!f.active[i]) {
@@ -59,11 +61,11 @@ void Projection::prepare(const Flow& f) {
       double squares = 0;
       for (int k = nb.start[i]; k < nb.start[i + 1]; ++k) {
         sum += nb.gradW[k];
-        squares += nb.gradW[k].squaredNorm();
+        squares += mobility_[nb.index[k]] * nb.gradW[k].squaredNorm();
       }
       const Vec3 own = f.volume_m3 * sum;
       const Vec3& wall = f.walls[i].gradLambda;
-      diagonal_[i] = std::max(0.0, (own + wall).dot(own + kWallMirror * wall)) +
+      diagonal_[i] = mobility_[i] * std::max(0.0, (own + wall).dot(own + kWallMirror * wall)) +
                      f.volume_m3 * f.volume_m3 * squares;
     }
   });
@@ -76,7 +78,8 @@ void Projection::accelerate(const Flow& f, const std::vector<double>& k) {
       Vec3 a = Vec3::Zero();
       for (int e = nb.start[i]; e < nb.start[i + 1]; ++e)
         a -= (k[i] + k[nb.index[e]]) * nb.gradW[e];
-      acceleration_[i] = f.volume_m3 * a - kWallMirror * k[i] * f.walls[i].gradLambda;
+      acceleration_[i] =
+          mobility_[i] * (f.volume_m3 * a - kWallMirror * k[i] * f.walls[i].gradLambda);
     }
   });
 }

@@ -255,13 +255,14 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
   Substep report;
   std::vector<Vec3>& v = particles.velocities;
   const Flow flow{particles.positions, active, neighbours, walls, volume_m3, pool};
-  projection.prepare(flow);
+  projection.prepare(flow, {});
   report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
   for (std::size_t i = 0; i < v.size(); ++i)
     if (active[i]) v[i] += dt_s * def.gravity_ms2;
   report.viscosityIterations =
       viscosity.apply(flow, def.fluid, settlingViscosity_Pas, dt_s, kernel.support_m(), v)
           .iterations;
+  if (settlingViscosity_Pas == 0) projection.prepare(flow, viscosity.wallDrag());
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, v);
   report.clamped = clampSpeeds(dt_s);
   carried.resize(v.size());

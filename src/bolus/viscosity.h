@@ -23,6 +23,8 @@ class Viscosity {
                double support_m, std::vector<Vec3>& velocities);
 
   const std::vector<double>& viscosity_Pas() const { return viscosity_; }
+  /// [particle] of the last step: its length times the rate at which walls brake the particle.
+  const std::vector<double>& wallDrag() const { return wall_; }
 
  private:
   void updateViscosity(const Flow& flow, const Fluid& fluid, const std::vector<Vec3>& velocities);
