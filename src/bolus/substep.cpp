@@ -170,8 +170,10 @@ void Solver::Impl::keepOnWall(int i) {
 
 void Solver::Impl::sampleWalls() {
   pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i)
+    for (int i = begin; i < end; ++i) {
       walls[i] = active[i] ? field.sample(particles.positions[i]) : WallSample{};
+      walls[i].gap_m = localGap_m(contacts[i]);
+    }
   });
 }
 

@@ -8,6 +8,7 @@
 // smooth and done by quadrature. Contacts are the nearest wall points with their inward direction.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,8 +26,9 @@ struct WallSample {
   double friction = 0;                   ///< sum int W / distance dS, 1/m^2
   Vec3 frictionVelocity = Vec3::Zero();  ///< the same, times wall velocity
   double area = 0;                       ///< sum int W dS over facing walls, 1/m
-  double normalSpeed_ms = 0;             ///< fastest normal motion of a wall within reach
-  int nearestTriangle = -1;              ///< by centroid; -1 when no wall is within reach
+  double gap_m = INFINITY;    ///< width of a slit that the particle is alone in; set by the solver
+  double normalSpeed_ms = 0;  ///< fastest normal motion of a wall within reach
+  int nearestTriangle = -1;   ///< by centroid; -1 when no wall is within reach
 };
 
 struct Contact {
