@@ -144,11 +144,16 @@ LumenSheets Lumen::evaluate(const LumenPose& pose) const {
       Vec3 foot = fixedPoint(std::clamp(at, 0.0, def_.length_m), u(c), &nrm);
       // An open tongue does not copy the step from the hanging uvula to the wall behind it.
       const double away =
-          smoothstep((gap_m - 1e-3) / 5e-3) * plateau(at, 0.068, 0.078, 0.088, 0.100);
+          smoothstep((gap_m - 1e-3) / 5e-3) * plateau(at, 0.068, 0.078, 0.094, 0.106);
       if (away > 0) {
-        Vec3 mean = Vec3::Zero();
-        for (int k = -4; k <= 4; ++k) mean += fixedPoint(at + k * 2.5e-3, u(c), nullptr) / 9;
+        Vec3 mean = Vec3::Zero(), meanNormal = Vec3::Zero();
+        for (int k = -4; k <= 4; ++k) {
+          Vec3 one;
+          mean += fixedPoint(at + k * 2.5e-3, u(c), &one) / 9;
+          meanNormal += one / 9;
+        }
         foot += away * (mean - foot);
+        nrm = (nrm + away * (meanNormal - nrm)).normalized();
       }
       out.m[i] = foot + nrm * gap_m;
       if (r < velumFirst || r > velumLast) continue;

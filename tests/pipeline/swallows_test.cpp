@@ -3,6 +3,7 @@
 // Minutes long: ctest -L slow.
 #include <cmath>
 
+#include "airway/interpenetration.h"
 #include "pipeline/simulation.h"
 #include "run.h"
 #include "scoring/measure.h"
@@ -31,6 +32,20 @@ std::optional<Swallowed> swallow(RunOptions options, int score, const std::strin
   return Swallowed{std::move(*history), std::move(*metrics)};
 }
 
+// The skin as it was filmed and measured, frame by frame.
+void expectSoundSkin(const frame::SkinTrack& skin) {
+  const auto report = checkManifold(skin.triangles, static_cast<int>(skin.wall.size()));
+  EXPECT_TRUE(report.closed()) << report.text();
+  ThreadPool pool(2);
+  for (std::size_t k = 0; k < skin.positions.size(); ++k) {
+    std::vector<Vec3> x;
+    for (const Vec3f& p : skin.positions[k]) x.push_back(p.cast<double>());
+    EXPECT_GT(volume(x, skin.triangles), 0) << "frame " << k;
+    const auto hit = airway::maxInterpenetration(x, skin.triangles, pool);
+    EXPECT_LE(hit.depth_m, 0.5e-3) << "frame " << k << ", vertex " << hit.vertex;
+  }
+}
+
 class Component4 : public test::Run,
                    public testing::WithParamInterface<std::tuple<int, const char*>> {};
 
@@ -41,7 +56,10 @@ TEST_P(Component4, MeasuresAsItselfAndConservesTheBolus) {
   ASSERT_TRUE(run->metrics.scores.at(4));
   EXPECT_EQ(*run->metrics.scores.at(4), score);
   EXPECT_TRUE(run->metrics.labelConfirmed.value_or(false)) << run->metrics.labelReason;
-  if (std::string_view(bolus) == "none") return;
+  if (std::string_view(bolus) == "none") {
+    expectSoundSkin(run->history.skin);
+    return;
+  }
 
   const frame::LedgerRow end = run->history.ledger.back();
   EXPECT_EQ(end.start, end.fluid + end.film + end.swallowed);
