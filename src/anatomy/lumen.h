@@ -102,8 +102,6 @@ class Lumen {
   };
   const Hole& port() const { return port_; }
   const Hole& inlet() const { return inletHole_; }
-  int portDepths() const { return portDepths_; }
-  int inletDepths() const { return inletDepths_; }
 
  private:
   Vec3 midline(double sigma_m, double raise, Vec3* normal) const;

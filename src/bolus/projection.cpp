@@ -42,7 +42,6 @@ void Projection::resize(int n) {
   rateK_.assign(n, 0.0);
   diagonal_.assign(n, 0.0);
   source_.assign(n, 0.0);
-  error_.assign(n, 0.0);
   next_.assign(n, 0.0);
   acceleration_.assign(n, Vec3::Zero());
 }

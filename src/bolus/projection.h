@@ -53,7 +53,7 @@ class Projection {
   void accelerate(const Flow& flow, const std::vector<double>& k);
 
   std::vector<double> mobility_;  // 1 / (1 + drag)
-  std::vector<double> diagonal_, source_, error_, densityK_, rateK_, next_;
+  std::vector<double> diagonal_, source_, densityK_, rateK_, next_;
   std::vector<Vec3> acceleration_;
 };
 

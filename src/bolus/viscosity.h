@@ -22,7 +22,6 @@ class Viscosity {
   Report apply(const Flow& flow, const Fluid& fluid, double viscosityOverride_Pas, double dt_s,
                double support_m, std::vector<Vec3>& velocities);
 
-  const std::vector<double>& viscosity_Pas() const { return viscosity_; }
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
   const std::vector<double>& wallDrag() const { return wall_; }
 

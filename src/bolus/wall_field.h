@@ -64,8 +64,6 @@ class WallField {
   static constexpr int kMaxContacts = 8;
   void contacts(const Vec3& p, double radius_m, std::vector<Contact>& out) const;
 
-  int triangleCount() const { return static_cast<int>(pieces_.size()); }
-
  private:
   struct Piece {
     Vec3 a, b, c, va, vb, vc, normal, centroid;

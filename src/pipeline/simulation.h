@@ -17,10 +17,4 @@ Result<kinematics::SwallowDef> loadSwallow(const RunOptions& options, int score,
 /// Frames at `fps` from the cue (time 0) to the end of the swallow.
 Result<frame::History> simulateSwallow(const RunOptions& options, int score, double fps,
                                        Progress& progress);
-
-/// Largest interpenetration of the skin, tongue volume and friends: the proofs of the motion.
-struct MotionProof {
-  double interpenetration_m = 0;
-  int frame = 0;
-};
 }  // namespace swallowclip::pipeline

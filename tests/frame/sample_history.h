@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "frame/history.h"
+#include "scratch.h"
 
 namespace swallowclip::frame {
 
@@ -15,23 +16,5 @@ namespace swallowclip::frame {
 /// `grid` x `grid` vertices per surface; numbers come from a fixed pseudo-random sequence.
 History sampleHistory(int frames = 5, int grid = 4, int particles = 7);
 
-/// A folder of its own for one test, removed at the end.
-class Scratch {
- public:
-  Scratch() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("sc-frame-{}-{}", info->name(), ::getpid());
-    std::filesystem::create_directories(path_);
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using test::Scratch;
 }  // namespace swallowclip::frame

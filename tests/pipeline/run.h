@@ -2,12 +2,12 @@
 // What the pipeline's tests share: a folder of their own, a progress that remembers, small files.
 #pragma once
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
 #include "core/file.h"
 #include "pipeline/pipeline.h"
+#include "scratch.h"
 
 namespace swallowclip::pipeline::test {
 
@@ -23,16 +23,12 @@ class Notes : public Progress {
 class Run : public testing::Test {
  protected:
   Run() {
-    folder =
-        std::filesystem::temp_directory_path() / ("swallowclip-run-" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
     options.data = SWALLOWCLIP_SOURCE_DIR;
     options.component = 4;
     options.scores = {0};
     options.out = folder / "out";
     options.commandLine = "swallowclip (test)";
   }
-  ~Run() override { std::filesystem::remove_all(folder); }
 
   /// The normal swallow cut off after `duration_s`.
   void shorten(double duration_s) {
@@ -63,7 +59,7 @@ class Run : public testing::Test {
     return names;
   }
 
-  std::filesystem::path folder;
+  swallowclip::test::Scratch folder;
   RunOptions options;
   Notes notes;
 };

@@ -12,28 +12,12 @@
 #include <string>
 
 #include "core/image.h"
+#include "scratch.h"
 #include "video/frame_sink.h"
 
 namespace swallowclip::video {
 
-class Scratch {
- public:
-  Scratch() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("sc-video-{}-{}", info->name(), ::getpid());
-    std::filesystem::create_directories(path_);
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using test::Scratch;
 
 /// A ramp with a square that moves to the right by 2 pixels a frame.
 inline Image movingPicture(int width, int height, int frame) {
