@@ -69,6 +69,7 @@ Result<void> checkInputs(const BolusDef& def, const WallMotion& m,
     return usageError("bolus", bad, "correct the bolus definition");
   if (def.solver != SolverKind::dfsph)
     return usageError("solver", "wcsph is not built yet", "use dfsph");
+  if (m.triangles.empty()) return {};  // free space
   const int vertices = static_cast<int>(positions.size());
   for (const Triangle& t : m.triangles)
     for (int v : t)
@@ -100,11 +101,15 @@ Result<void> Solver::seed(double t_s, const SeedRange& range) {
   return {};
 }
 
-Result<void> Solver::place(double t_s, std::vector<Vec3> positions) {
+Result<void> Solver::place(double t_s, std::vector<Vec3> positions, std::vector<Vec3> velocities) {
   Impl& s = *impl_;
   s.motion->at(t_s, s.wallPositions, s.wallVelocities);
   if (auto ok = checkInputs(s.def, *s.motion, s.wallPositions); !ok) return ok;
-  s.start(t_s, std::move(positions));
+  if (!velocities.empty() && velocities.size() != positions.size())
+    return usageError(
+        "bolus", fmt::format("{} velocities for {} particles", velocities.size(), positions.size()),
+        "give one velocity per particle, or none");
+  s.start(t_s, std::move(positions), std::move(velocities));
   return {};
 }
 

@@ -28,6 +28,10 @@ struct BolusDef {
   KernelKind kernel = KernelKind::cubicSpline;
   SolverKind solver = SolverKind::dfsph;
   double swallowedAt_s_m = 0.180;  ///< end of the UES (DESIGN 2)
+  /// Length of the domain along each axis where it repeats, 0 where it does not. Particles live in
+  /// [0, period); walls must reach a kernel support beyond both ends (verification cases).
+  Vec3 period_m = Vec3::Zero();
+  bool slip = false;  ///< walls without friction
 
   /// 621 at 2 mm for the nominal 5 mL, as the thesis has it (4.968 mL).
   int particleCount() const;
@@ -40,6 +44,7 @@ enum class State : std::uint8_t { fluid = 0, film = 1, swallowed = 2 };
 struct Particles {
   std::vector<Vec3> positions, velocities;
   std::vector<double> densityRatio;  ///< rho / rho0
+  std::vector<double> pressure_Pa;   ///< of the last step, above that of the air, never negative
   std::vector<State> state;
   std::vector<double> s_m;           ///< path coordinate of the nearest skin point
   std::vector<std::uint8_t> branch;  ///< WallMotion::branch of the nearest skin vertex
@@ -80,7 +85,7 @@ class Solver {
   /// Fills the held lumen at t with exactly def.particleCount() particles.
   Result<void> seed(double t_s, const SeedRange& range);
   /// Starts from given places instead (tests, verification).
-  Result<void> place(double t_s, std::vector<Vec3> positions);
+  Result<void> place(double t_s, std::vector<Vec3> positions, std::vector<Vec3> velocities = {});
   /// Lets the fluid come to rest between the walls as they are at t, frozen, for at most
   /// `longest_s` of simulated time; ends with all velocities zero.
   Result<RelaxReport> relax(double t_s, double longest_s = 1.5);

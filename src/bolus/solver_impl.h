@@ -24,7 +24,7 @@ struct Solver::Impl {
     int viscosityIterations = 0, clamped = 0, rescued = 0;
   };
 
-  void start(double t_s, std::vector<Vec3> places);
+  void start(double t_s, std::vector<Vec3> places, std::vector<Vec3> velocities = {});
   /// Walls at t, particles pushed inside them, states, neighbours, wall integrals, densities.
   int meetWalls(double t_s);
   double chooseStep_s(double longest_s) const;

@@ -41,10 +41,12 @@ Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
       filmDrainage_s(
           drainagePerAcceleration_s(d.fluid, kFilmThickness * d.spacing_m, d.gravity_ms2.norm())) {}
 
-void Solver::Impl::start(double t_s, std::vector<Vec3> places) {
+void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3> velocities) {
   const std::size_t n = places.size();
   particles.positions = std::move(places);
-  particles.velocities.assign(n, Vec3::Zero());
+  particles.velocities = std::move(velocities);
+  particles.velocities.resize(n, Vec3::Zero());
+  particles.pressure_Pa.assign(n, 0.0);
   particles.densityRatio.assign(n, 1.0);
   particles.state.assign(n, State::fluid);
   particles.s_m.assign(n, 0.0);
