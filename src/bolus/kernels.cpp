@@ -130,7 +130,11 @@ double Kernel::latticeSum(double spacing_m) const {
 }
 
 KernelTable::KernelTable(const Kernel& kernel)
-    : support_m_(kernel.support_m()), perMetre_(kIntervals / support_m_), entries_(kIntervals + 1) {
+    : support_m_(kernel.support_m()),
+      selfW_(kernel.w(0)),
+      cubicSpline_(kernel.kind() == KernelKind::cubicSpline),
+      pairs_(kIntervals + 1),
+      walls_(kIntervals + 1) {
   const double step = support_m_ / kIntervals;
   auto integrand = [&](double r) { return kernel.w(r) * r * r; };
   std::vector<double> upTo(kIntervals + 1, 0.0);  // int_0^r W s^2 ds by Simpson's rule
@@ -141,10 +145,20 @@ KernelTable::KernelTable(const Kernel& kernel)
     upTo[i + 1] = upTo[i] + step / 6 * (integrand(a) + 4 * integrand(a + step / 2) + integrand(b));
   }
   const double exact = 1 / (4 * kPi) / upTo[kIntervals];
-  entries_[0] = {kernel.w(0), 0};
-  for (int i = 1; i <= kIntervals; ++i) {
-    const double r = i * step;
-    entries_[i] = {kernel.w(r), upTo[i] * exact / (r * r)};
+  const auto inside = [&](int i) { return std::min(i * step, support_m_ * (1 - 1e-15)); };
+  const auto w = [&](int i) { return kernel.w(inside(i)); };
+  // slope / r has a limit at 0, reached within a node
+  const auto slope = [&](int i) {
+    const double r = std::max(inside(i), 1e-3 * step);
+    return kernel.slope(r) / r;
+  };
+  const auto f = [&](int i) {
+    return i == 0 ? kernel.w(0) / 3 : upTo[i] * exact / std::pow(i * step, 3);
+  };
+  for (int i = 0; i < kIntervals; ++i) {
+    const auto to = [](double x) { return static_cast<float>(x); };
+    pairs_[i] = {to(w(i)), to(w(i + 1) - w(i)), to(slope(i)), to(slope(i + 1) - slope(i))};
+    walls_[i] = {to(w(i)), to(w(i + 1) - w(i)), to(f(i)), to(f(i + 1) - f(i))};
   }
 }
 }  // namespace swallowclip::bolus

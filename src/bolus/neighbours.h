@@ -2,6 +2,7 @@
 // Who is within a kernel support of whom: counting-sort grid, then flat lists (CSR) with the
 // kernel gradient cached, since the projections and the viscosity walk them many times a step.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,6 +23,14 @@ class PointGrid {
   /// Calls visit(index) for the points of the 27 cells around p.
   template <class Visit>
   void around(const Vec3& p, Visit&& visit) const {
+    rowsAround(p, [&](int first, int last) {
+      for (int k = first; k < last; ++k) visit(order_[k]);
+    });
+  }
+
+  /// Calls visit(first, last) for each row of those cells: places in order().
+  template <class Visit>
+  void rowsAround(const Vec3& p, Visit&& visit) const {
     if (order_.empty()) return;
     const Eigen::Vector3i c = cellOf(p);
     for (int z = std::max(c.z() - 1, 0); z <= std::min(c.z() + 1, size_.z() - 1); ++z)
@@ -29,9 +38,11 @@ class PointGrid {
         const int x0 = std::max(c.x() - 1, 0), x1 = std::min(c.x() + 1, size_.x() - 1);
         if (x0 > x1) continue;
         const int row = (z * size_.y() + y) * size_.x();
-        for (int k = start_[row + x0]; k < start_[row + x1 + 1]; ++k) visit(order_[k]);
+        visit(start_[row + x0], start_[row + x1 + 1]);
       }
   }
+
+  const std::vector<int>& order() const { return order_; }
 
  private:
   Eigen::Vector3i cellOf(const Vec3& p) const;
@@ -42,21 +53,46 @@ class PointGrid {
   std::vector<int> start_, order_, cell_;
 };
 
+/// The active particles in the order of their cells, so that neighbours lie near each other in
+/// memory: "slots". Lists are as long as whole vectors; what fills them up names the slot `count`
+/// and has gradient zero. Gradients are floats and exactly antisymmetric.
 struct Neighbours {
-  std::vector<int> start;    ///< [n + 1]
-  std::vector<int> index;    ///< neighbours of i: index[start[i]] .. index[start[i + 1] - 1]
-  std::vector<Vec3> gradW;   ///< gradient of W(x_i - x_j) at x_i (1/m^4)
-  std::vector<double> sumW;  ///< [n] sum of W over the neighbours and the particle itself
+  int count = 0;                  ///< slots
+  std::vector<int> id;            ///< [count] particle of a slot
+  std::vector<int> slot;          ///< [particle] its slot, or -1
+  std::vector<int> start;         ///< [count + 1] in whole vectors (simd::kLanes)
+  std::vector<int> index;         ///< slots of the neighbours
+  std::vector<float> gx, gy, gz;  ///< V gradW(x_i - x_j) at x_i (1/m)
+  std::vector<float> r;           ///< distances, m
+  std::vector<float> x, y, z;     ///< [count + padding] from the low corner, m
+  std::vector<double> sumW;       ///< [count] V times the sum of W, the particle itself included
 
-  /// Lists without the particle itself, in ascending order; untaken ones have none and are in none.
-  void build(std::span<const Vec3> points, std::span<const std::uint8_t> take, const Kernel& kernel,
-             ThreadPool& pool);
+  /// `take` [particle] says who is active. With a period, images count as neighbours too.
+  void build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
+             const KernelTable& kernel, double volume_m3, const Vec3& period_m, ThreadPool& pool);
 
-  /// How many of the points of the last build are nearer to p than radius (at most a support).
-  int countWithin(std::span<const Vec3> points, const Vec3& p, double radius_m) const;
+  /// How many particles of the last build are nearer to p than radius (at most a support).
+  int countWithin(const Vec3& p, double radius_m) const;
 
  private:
-  PointGrid grid_;
-  std::vector<std::vector<int>> found_;
+  struct Found {
+    std::vector<int> index, length, places;
+    std::vector<float> dx, dy, dz, r, gx, gy, gz;
+  };
+  void sortIntoCells(std::span<const Vec3> points, std::span<const std::uint8_t> take,
+                     double cell_m, const Vec3& period_m);
+  void search(int begin, int end, const KernelTable& kernel, double volume_m3, Found& out);
+
+  int cellAlong(float x_m, int axis) const {
+    return std::min(static_cast<int>(x_m / cell_m_), size_[axis] - 1);
+  }
+
+  // sorted points, images of periodic neighbours among them
+  Vec3 low_ = Vec3::Zero();
+  double cell_m_ = 1;
+  Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
+  std::vector<int> cellStart_, owner_, self_;  // owner: slot; self: [count] place of a slot
+  std::vector<float> sx_, sy_, sz_;
+  std::vector<Found> found_;
 };
 }  // namespace swallowclip::bolus

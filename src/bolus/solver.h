@@ -31,7 +31,10 @@ struct BolusDef {
   /// Length of the domain along each axis where it repeats, 0 where it does not. Particles live in
   /// [0, period); walls must reach a kernel support beyond both ends (verification cases).
   Vec3 period_m = Vec3::Zero();
-  bool slip = false;  ///< walls without friction
+  bool slip = false;            ///< walls without friction
+  double longestStep_s = 1e-3;  ///< DESIGN 5
+  double courant = 0.4;         ///< spacings per step at the fastest particle, DESIGN 5
+  double densityTolerance = 1e-4, rateTolerance = 3e-4;  ///< mean compression left, assumed
 
   /// 621 at 2 mm for the nominal 5 mL, as the thesis has it (4.968 mL).
   int particleCount() const;

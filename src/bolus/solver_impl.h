@@ -34,6 +34,7 @@ struct Solver::Impl {
 
   void evaluateWalls(double t_s);
   void shutBranches(double t_s);
+  void wrapPeriods();
   bool escaped(const Vec3& p) const;
   int pushInside();
   void keepOutOfSlits(int i);

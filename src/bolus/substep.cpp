@@ -8,9 +8,7 @@
 namespace swallowclip::bolus {
 namespace {
 constexpr int kWallChunk = 16;            // particles per work item of wall work
-constexpr double kLongestStep_s = 1e-3;   // DESIGN 5
 constexpr double kShortestStep_s = 5e-6;  // assumed: below it nothing moves any more
-constexpr double kFluidCourant = 0.4;     // spacings per step at the fastest particle, DESIGN 5
 constexpr double kWallCourant = 0.05;     // spacings per step at the fastest wall, DESIGN 5
 constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contacts reach 0.9
 constexpr double kFilmGap = 0.3;          // spacings, DESIGN 5 (0.6 invents residue)
@@ -55,6 +53,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   walls.assign(n, {});
   active.assign(n, 1);
   projection.resize(static_cast<int>(n));
+  projection.tolerances = {def.densityTolerance, def.rateTolerance};
   stats = {};
   errorSum = errorCount = aboveTenCount = infeasible_s = 0;
   meetWalls(t_s);
@@ -151,8 +150,8 @@ void Solver::Impl::updateStates() {
 
 bool Solver::Impl::staysFilm(std::size_t i) const {
   return particles.state[i] == State::film && !contacts[i].empty() &&
-         neighbours.countWithin(particles.positions, particles.positions[i],
-                                kTakeUpReach * def.spacing_m) < kTakeUpCount;
+         neighbours.countWithin(particles.positions[i], kTakeUpReach * def.spacing_m) <
+             kTakeUpCount;
 }
 
 Vec3 Solver::Impl::filmVelocity_ms(int i) const {
@@ -174,6 +173,7 @@ void Solver::Impl::sampleWalls() {
   pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       walls[i] = active[i] ? field.sample(particles.positions[i]) : WallSample{};
+      if (def.slip) walls[i].friction = walls[i].area = 0;
       walls[i].gap_m = localGap_m(contacts[i]);
     }
   });
@@ -214,16 +214,26 @@ void Solver::Impl::updatePath(bool all) {
   }
 }
 
+void Solver::Impl::wrapPeriods() {
+  for (int a = 0; a < 3; ++a) {
+    const double length = def.period_m[a];
+    if (length <= 0) continue;
+    for (Vec3& x : particles.positions) x[a] -= length * std::floor(x[a] / length);
+  }
+}
+
 int Solver::Impl::meetWalls(double t_s) {
   time_s = t_s;
+  wrapPeriods();
   evaluateWalls(t_s);
   const int rescued = pushInside();
   updateStates();
   sampleWalls();
   updatePath(false);
-  neighbours.build(particles.positions, active, kernel, pool);
+  neighbours.build(particles.positions, active, table, volume_m3, def.period_m, pool);
   for (std::size_t i = 0; i < active.size(); ++i)
-    particles.densityRatio[i] = active[i] ? volume_m3 * neighbours.sumW[i] + walls[i].lambda : 1.0;
+    particles.densityRatio[i] =
+        active[i] ? neighbours.sumW[neighbours.slot[i]] + walls[i].lambda : 1.0;
   return rescued;
 }
 
@@ -234,9 +244,9 @@ double Solver::Impl::chooseStep_s(double longest_s) const {
     fastest = std::max(fastest, particles.velocities[i].norm());
     if (active[i]) wall = std::max(wall, walls[i].normalSpeed_ms);
   }
-  double dt = kLongestStep_s;
+  double dt = def.longestStep_s;
   fastest += dt * def.gravity_ms2.norm();
-  dt = std::min(dt, kFluidCourant * def.spacing_m / fastest);
+  dt = std::min(dt, def.courant * def.spacing_m / fastest);
   if (wall > 0) dt = std::min(dt, kWallCourant * def.spacing_m / wall);
   dt = std::max(dt, kShortestStep_s);
   return longest_s / std::ceil(longest_s / dt - 1e-9);  // equal steps to the end, no sliver
@@ -258,7 +268,7 @@ int Solver::Impl::clampSpeeds(double dt_s) {
 Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
   Substep report;
   std::vector<Vec3>& v = particles.velocities;
-  const Flow flow{particles.positions, active, neighbours, walls, volume_m3, pool};
+  const Flow flow{neighbours, walls, pool};
   projection.prepare(flow, {});
   report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
   for (std::size_t i = 0; i < v.size(); ++i)
@@ -268,6 +278,9 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
           .iterations;
   if (settlingViscosity_Pas == 0) projection.prepare(flow, viscosity.wallDrag());
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, v);
+  for (std::size_t i = 0; i < v.size(); ++i)
+    particles.pressure_Pa[i] =
+        def.fluid.density_kgm3 * projection.pressure_m2s2(static_cast<int>(i));
   report.clamped = clampSpeeds(dt_s);
   carried.resize(v.size());
   for (std::size_t i = 0; i < v.size(); ++i) {

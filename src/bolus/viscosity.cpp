@@ -2,6 +2,7 @@
 #include "bolus/viscosity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace swallowclip::bolus {
@@ -16,126 +17,175 @@ constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 
 double shearRate_s(const Flow& f, const std::vector<Vec3>& v, int i) {
   const Neighbours& nb = f.neighbours;
+  const int p = f.particle(i);
   Mat3 gradient = Mat3::Zero();
-  for (int k = nb.start[i]; k < nb.start[i + 1]; ++k)
-    gradient += (v[nb.index[k]] - v[i]) * nb.gradW[k].transpose();
-  gradient *= f.volume_m3;
-  const WallSample& w = f.walls[i];
+  for (int k = nb.start[i]; k < nb.start[i + 1] && nb.index[k] < nb.count; ++k)
+    gradient += (v[nb.id[nb.index[k]]] - v[p]) * Vec3(nb.gx[k], nb.gy[k], nb.gz[k]).transpose();
+  const WallSample& w = f.walls[p];
   const double steep = w.gradLambda.norm();
   // outside, the velocity goes on linearly through the wall's: (v_wall - v) / distance along n
   if (w.friction > 0 && w.area > 0 && steep > 0)
     gradient += std::min(w.lambda, 1.0) / (w.area * steep) *
-                (w.frictionVelocity - w.friction * v[i]) * w.gradLambda.transpose();
+                (w.frictionVelocity - w.friction * v[p]) * w.gradLambda.transpose();
   const Mat3 d = 0.5 * (gradient + gradient.transpose());
   return std::sqrt(2 * d.squaredNorm());
 }
 
-void Viscosity::updateViscosity(const Flow& f, const Fluid& fluid, const std::vector<Vec3>& v) {
-  f.pool.forChunks(static_cast<int>(v.size()), kSweepChunk, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i)
-      if (f.active[i]) viscosity_[i] = apparentViscosity_Pas(fluid, shearRate_s(f, v, i));
-  });
-}
-
+// c_ij (v_ij . g) g with g = V gradW stands for the pair term: V gradW = -V slope x, slope = -W'/r,
+// so that  dt 10 nu V slope / (r^2 + eta^2) (v.x) x = dt 10 nu / (V slope (r^2 + eta^2)) (v.g) g.
 void Viscosity::assemble(const Flow& f, double density, double dt, double support) {
   const Neighbours& nb = f.neighbours;
   const double eta2 = kSoftening * support * support / 4;
-  pair_.resize(nb.index.size());
-  f.pool.forChunks(static_cast<int>(wall_.size()), kSweepChunk, [&](int begin, int end, int) {
+  pair_.assign(nb.index.size(), 0.f);
+  f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
-      if (!f.active[i]) continue;
       // Across a slit with no room for a second particle the profile is not resolved: there the
       // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
-      const WallSample& w = f.walls[i];
+      const int p = f.particle(i);
+      const WallSample& w = f.walls[p];
       const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
-      wall_[i] = dt * viscosity_[i] / density * std::max(kWallFactor * w.friction, slit);
-      Mat3 diagonal = Mat3::Identity() * (1 + wall_[i]);
-      for (int k = nb.start[i]; k < nb.start[i + 1]; ++k) {
-        const int j = nb.index[k];
-        const Vec3 x = f.positions[i] - f.positions[j];
-        const double r2 = x.squaredNorm();
+      wallDrag_[p] = dt * viscosity_[i] / density * std::max(kWallFactor * w.friction, slit);
+      wall_[i] = static_cast<float>(wallDrag_[p]);
+      Eigen::Matrix3f diagonal = Eigen::Matrix3f::Identity() * (1 + wall_[i]);
+      for (int k = nb.start[i]; k < nb.start[i + 1] && nb.index[k] < nb.count; ++k) {
+        const Vec3f g(nb.gx[k], nb.gy[k], nb.gz[k]);
+        const double g2 = g.squaredNorm();
+        if (g2 <= 0) continue;
+        const double r2 = static_cast<double>(nb.r[k]) * nb.r[k];
         // harmonic mean: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
-        const double mu = 2 * viscosity_[i] * viscosity_[j] / (viscosity_[i] + viscosity_[j]);
-        const double slope = r2 > 0 ? -nb.gradW[k].dot(x) / r2 : 0;  // -W'/r
-        pair_[k] = dt * kPairFactor * mu / density * f.volume_m3 * slope / (r2 + eta2);
-        diagonal += pair_[k] * x * x.transpose();
+        const double mu =
+            2 * viscosity_[i] * viscosity_[nb.index[k]] / (viscosity_[i] + viscosity_[nb.index[k]]);
+        // |g| = V slope r
+        pair_[k] =
+            static_cast<float>(dt * kPairFactor * mu / density * std::sqrt(r2 / g2) / (r2 + eta2));
+        diagonal += pair_[k] * g * g.transpose();
       }
-      inverseDiagonal_[i] = diagonal.inverse();
+      const Eigen::Matrix3f inverse = diagonal.inverse();
+      inverse_[i] = {inverse(0, 0), inverse(0, 1), inverse(0, 2),
+                     inverse(1, 1), inverse(1, 2), inverse(2, 2)};
     }
   });
 }
 
-void Viscosity::multiply(const Flow& f, const std::vector<Vec3>& v, std::vector<Vec3>& out) const {
-  const Neighbours& nb = f.neighbours;
-  f.pool.forChunks(static_cast<int>(v.size()), kSweepChunk, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      if (!f.active[i]) continue;
-      Vec3 sum = (1 + wall_[i]) * v[i];
-      for (int k = nb.start[i]; k < nb.start[i + 1]; ++k) {
-        const int j = nb.index[k];
-        const Vec3 x = f.positions[i] - f.positions[j];
-        sum += (pair_[k] * (v[i] - v[j]).dot(x)) * x;
+void Viscosity::precondition(int i) {
+  const std::array<float, 6>& m = inverse_[i];
+  const float x = residual_.x[i], y = residual_.y[i], z = residual_.z[i];
+  z_.x[i] = m[0] * x + m[1] * y + m[2] * z;
+  z_.y[i] = m[1] * x + m[3] * y + m[4] * z;
+  z_.z[i] = m[2] * x + m[4] * y + m[5] * z;
+}
+
+Viscosity::Report Viscosity::solve(const Flow& f) {
+  const int n = f.count();
+  const auto dot = [](const Floats3& a, const Floats3& b, int i) {
+    return static_cast<double>(a.x[i]) * b.x[i] + static_cast<double>(a.y[i]) * b.y[i] +
+           static_cast<double>(a.z[i]) * b.z[i];
+  };
+  const auto sweep = [&](const Floats3& v) {
+    return ViscositySweep{f.lists(),         pair_.data(),      wall_.data(),
+                          v.x.data(),        v.y.data(),        v.z.data(),
+                          product_.x.data(), product_.y.data(), product_.z.data()};
+  };
+  // first guess: v itself
+  const ViscositySweep first = sweep(v_), step = sweep(direction_);
+  f.sweep([&](int b, int e, int) { first.run(b, e); });
+  double right2 = 0, rz = 0, rr = 0;
+  for (int i = 0; i < n; ++i) {
+    right2 += right_[i].squaredNorm();
+    residual_.x[i] = static_cast<float>(right_[i].x()) - product_.x[i];
+    residual_.y[i] = static_cast<float>(right_[i].y()) - product_.y[i];
+    residual_.z[i] = static_cast<float>(right_[i].z()) - product_.z[i];
+    precondition(i);
+    direction_.x[i] = z_.x[i];
+    direction_.y[i] = z_.y[i];
+    direction_.z[i] = z_.z[i];
+    rz += dot(residual_, z_, i);
+    rr += dot(residual_, residual_, i);
+  }
+  const double goal2 =
+      std::max(kTolerance * kTolerance * right2, kSmallSpeed_ms * kSmallSpeed_ms * n);
+  Report report;
+  std::vector<std::array<double, 2>> parts((n + kSweepChunk - 1) / kSweepChunk);
+  while (rr > goal2) {
+    report.atCap = report.iterations >= kCap;
+    if (report.atCap) break;
+    ++report.iterations;
+    const double curvature = f.pool.sumChunks(
+        n, kSweepChunk, [&](int b, int e) { return step.run(b, e); }, kSweepAlone);
+    const float alpha = static_cast<float>(rz / curvature);
+    f.sweep([&](int b, int e, int c) {
+      parts[c] = {0, 0};
+      for (int i = b; i < e; ++i) {
+        v_.x[i] += alpha * direction_.x[i];
+        v_.y[i] += alpha * direction_.y[i];
+        v_.z[i] += alpha * direction_.z[i];
+        residual_.x[i] -= alpha * product_.x[i];
+        residual_.y[i] -= alpha * product_.y[i];
+        residual_.z[i] -= alpha * product_.z[i];
+        precondition(i);
+        parts[c][0] += dot(residual_, z_, i);
+        parts[c][1] += dot(residual_, residual_, i);
       }
-      out[i] = sum;
+    });
+    double next = 0;
+    rr = 0;
+    for (const auto& p : parts) {
+      next += p[0];
+      rr += p[1];
     }
-  });
+    const float keep = static_cast<float>(next / rz);
+    rz = next;
+    for (int i = 0; i < n; ++i) {
+      direction_.x[i] = z_.x[i] + keep * direction_.x[i];
+      direction_.y[i] = z_.y[i] + keep * direction_.y[i];
+      direction_.z[i] = z_.z[i] + keep * direction_.z[i];
+    }
+  }
+  return report;
 }
 
 Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, double override_Pas,
                                    double dt_s, double support_m, std::vector<Vec3>& v) {
-  const int n = static_cast<int>(v.size());
-  viscosity_.resize(n, fluid.viscosity_Pas);
-  wall_.assign(n, 0.0);
-  inverseDiagonal_.resize(n);
-  for (auto* a : {&residual_, &direction_, &product_, &preconditioned_}) a->assign(n, Vec3::Zero());
-  if (override_Pas > 0)
-    std::fill(viscosity_.begin(), viscosity_.end(), override_Pas);
-  else
-    updateViscosity(f, fluid, v);
+  const Neighbours& nb = f.neighbours;
+  const int n = f.count();
+  wallDrag_.assign(v.size(), 0.0);
+  viscosity_.resize(n);
+  right_.resize(n);
+  inverse_.resize(n);
+  wall_.assign(n + 1, 0.f);
+  for (auto* a : {&v_, &residual_, &direction_, &product_, &z_}) a->assign(n + 1);
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      viscosity_[i] = override_Pas > 0 ? override_Pas
+                      : fluid.model == RheologyModel::newtonian
+                          ? fluid.viscosity_Pas
+                          : apparentViscosity_Pas(fluid, shearRate_s(f, v, i));
+  });
   assemble(f, fluid.density_kgm3, dt_s, support_m);
-
-  auto dot = [&](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-    return f.pool.sumChunks(n, 4 * kSweepChunk, [&](int begin, int end) {
-      double sum = 0;
-      for (int i = begin; i < end; ++i)
-        if (f.active[i]) sum += a[i].dot(b[i]);
-      return sum;
-    });
-  };
-  // right side b = v + wall drag; first guess v itself
-  multiply(f, v, product_);
-  double right2 = 0, active = 0;
   for (int i = 0; i < n; ++i) {
-    if (!f.active[i]) continue;
-    const WallSample& w = f.walls[i];
-    const Vec3 b = w.friction > 0 ? Vec3(v[i] + wall_[i] / w.friction * w.frictionVelocity) : v[i];
-    right2 += b.squaredNorm();
-    active += 1;
-    residual_[i] = b - product_[i];
-    preconditioned_[i] = inverseDiagonal_[i] * residual_[i];
-    direction_[i] = preconditioned_[i];
+    const int p = f.particle(i);
+    const WallSample& w = f.walls[p];
+    right_[i] = w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
+    v_.x[i] = static_cast<float>(v[p].x());
+    v_.y[i] = static_cast<float>(v[p].y());
+    v_.z[i] = static_cast<float>(v[p].z());
   }
-  const double goal2 =
-      std::max(kTolerance * kTolerance * right2, kSmallSpeed_ms * kSmallSpeed_ms * active);
-  Report report;
-  double rz = dot(residual_, preconditioned_);
-  while (dot(residual_, residual_) > goal2) {
-    report.atCap = report.iterations >= kCap;
-    if (report.atCap) break;
-    ++report.iterations;
-    multiply(f, direction_, product_);
-    const double step = rz / dot(direction_, product_);
-    for (int i = 0; i < n; ++i) {
-      if (!f.active[i]) continue;
-      v[i] += step * direction_[i];
-      residual_[i] -= step * product_[i];
-      preconditioned_[i] = inverseDiagonal_[i] * residual_[i];
+  const Report report = solve(f);
+  // The solution enters only through the antisymmetric pair terms, so that momentum is kept to
+  // double precision however far the solve went.
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      Vec3 sum = right_[i];
+      for (int k = nb.start[i]; k < nb.start[i + 1]; ++k) {
+        const int j = nb.index[k];
+        const Vec3 g(nb.gx[k], nb.gy[k], nb.gz[k]);
+        const Vec3 u(static_cast<double>(v_.x[i]) - v_.x[j], static_cast<double>(v_.y[i]) - v_.y[j],
+                     static_cast<double>(v_.z[i]) - v_.z[j]);
+        sum -= pair_[k] * u.dot(g) * g;
+      }
+      v[f.particle(i)] = sum / (1 + wallDrag_[f.particle(i)]);
     }
-    const double next = dot(residual_, preconditioned_);
-    const double keep = next / rz;
-    rz = next;
-    for (int i = 0; i < n; ++i) direction_[i] = preconditioned_[i] + keep * direction_[i];
-  }
+  });
   return report;
 }
 }  // namespace swallowclip::bolus

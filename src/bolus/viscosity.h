@@ -4,6 +4,7 @@
 //   a_i = 10 sum nu_ij V (v_ij . x_ij) / (r^2 + eta^2) gradW_ij - 2 nu_i (friction v_i - friction
 //   v_wall)
 #pragma once
+#include <array>
 #include <vector>
 
 #include "bolus/fluid.h"
@@ -23,18 +24,21 @@ class Viscosity {
                double support_m, std::vector<Vec3>& velocities);
 
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
-  const std::vector<double>& wallDrag() const { return wall_; }
+  const std::vector<double>& wallDrag() const { return wallDrag_; }
 
  private:
-  void updateViscosity(const Flow& flow, const Fluid& fluid, const std::vector<Vec3>& velocities);
   void assemble(const Flow& flow, double density_kgm3, double dt_s, double support_m);
-  void multiply(const Flow& flow, const std::vector<Vec3>& v, std::vector<Vec3>& out) const;
+  Report solve(const Flow& flow);
+  void precondition(int slot);
 
-  std::vector<double> viscosity_, pair_, wall_;
-  std::vector<Mat3> inverseDiagonal_;
-  std::vector<Vec3> residual_, direction_, product_, preconditioned_;
+  std::vector<double> wallDrag_;                    // [particle]
+  std::vector<double> viscosity_;                   // [slot]
+  std::vector<Vec3> right_;                         // [slot] right side
+  std::vector<float> pair_, wall_;                  // [pair], [slot + 1]
+  std::vector<std::array<float, 6>> inverse_;       // [slot] of the diagonal blocks, upper half
+  Floats3 v_, residual_, direction_, product_, z_;  // [slot + 1]
 };
 
-/// Shear rate sqrt(2 D:D) (1/s) of particle i, walls included.
-double shearRate_s(const Flow& flow, const std::vector<Vec3>& velocities, int i);
+/// Shear rate sqrt(2 D:D) (1/s) at a slot, walls included.
+double shearRate_s(const Flow& flow, const std::vector<Vec3>& velocities, int slot);
 }  // namespace swallowclip::bolus

@@ -6,36 +6,16 @@
 
 namespace swallowclip::bolus {
 namespace {
-// Triangle rules of degree 2 and 5 (Strang & Fix 1973; Cowper 1973).
-const std::array<Vec3, 3> kRule3{
-    {{2. / 3, 1. / 6, 1. / 6}, {1. / 6, 2. / 3, 1. / 6}, {1. / 6, 1. / 6, 2. / 3}}};
-constexpr std::array<double, 3> kWeight3{1. / 3, 1. / 3, 1. / 3};
-constexpr double kA = 0.059715871789769820, kB = 0.470142064105115090;
-constexpr double kC = 0.797426985353087322, kD = 0.101286507323456339;
-const std::array<Vec3, 7> kRule7{{{1. / 3, 1. / 3, 1. / 3},
-                                  {kA, kB, kB},
-                                  {kB, kA, kB},
-                                  {kB, kB, kA},
-                                  {kC, kD, kD},
-                                  {kD, kC, kD},
-                                  {kD, kD, kC}}};
-constexpr double kW1 = 0.132394152788506181, kW2 = 0.125939180544827153;
-constexpr std::array<double, 7> kWeight7{0.225, kW1, kW1, kW1, kW2, kW2, kW2};
-
-constexpr double kFineSpacing_m = 1.5e-3;  // below: 7 points (DESIGN 5: 3 at 2 mm, 7 at 1 mm)
-constexpr int kMaxCuts = 6;                // a triangle becomes at most 4^6 pieces
-constexpr double kEmptyArea_m2 = 1e-16;    // slivers without a usable normal
+// Quadrature points by a piece's longest edge in spacings: the same relative error at every
+// resolution (wall_field_test). Longer triangles are cut.
+constexpr double kOnePoint = 0.35, kThreePoints = 1.5, kLongestEdge = 2;
+constexpr int kMaxCuts = 6;              // a triangle becomes at most 4^6 pieces
+constexpr double kEmptyArea_m2 = 1e-16;  // slivers without a usable normal
 // Nearer than this the wall shear no longer grows: 0.3 spacings, assumed (0.2 to 0.5), the order
 // of the distance at which particles rest.
 constexpr double kLeastShearDistance = 0.3;
 constexpr double kSameDirection = 0.95;  // cosine above which two contacts say the same
 
-// Solid angle of abc seen from the origin, positive from the inner side.
-double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2 * std::atan2(a.dot(b.cross(c)),
-                        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-}
 double cornerAngle(const Vec3& at, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - at, v = c - at;
   return std::atan2(u.cross(v).norm(), u.dot(v));
@@ -65,12 +45,7 @@ NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> x,
 }
 
 WallField::WallField(const KernelTable& table, double spacing_m)
-    : table_(&table), spacing_m_(spacing_m) {
-  const bool fine = spacing_m < kFineSpacing_m;
-  rule_ = fine ? std::span<const Vec3>(kRule7) : std::span<const Vec3>(kRule3);
-  ruleWeight_ = fine ? std::span<const double>(kWeight7) : std::span<const double>(kWeight3);
-  longestEdge_m_ = (fine ? 2.0 : 1.25) * spacing_m;
-}
+    : table_(&table), spacing_m_(spacing_m), longestEdge_m_(kLongestEdge * spacing_m) {}
 
 WallField::Piece WallField::makePiece(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& va,
                                       const Vec3& vb, const Vec3& vc, int triangle) const {
@@ -103,22 +78,35 @@ void WallField::addPiece(const Piece& t, int depth) {
   pieces_.push_back(t);
   centroids_.push_back(t.centroid);
   largestRadius_m_ = std::max(largestRadius_m_, t.radius);
-  for (const Vec3& w : rule_) {
-    quadPoints_.push_back(t.a * w[0] + t.b * w[1] + t.c * w[2]);
-    quadVelocities_.push_back(t.va * w[0] + t.vb * w[1] + t.vc * w[2]);
-  }
+}
+
+// Walls that stand still keep their pieces, as long as the fluid stays in the box they were made
+// for.
+bool WallField::sameWalls(std::span<const Triangle> triangles, std::span<const Vec3> x,
+                          std::span<const Vec3> v, const Vec3& low, const Vec3& high,
+                          std::span<const std::uint8_t> skip) {
+  const auto same = [](const auto& a, const auto& b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
+  };
+  if (built_.triangles == triangles.size() && (low.array() >= built_.low.array()).all() &&
+      (high.array() <= built_.high.array()).all() && same(built_.positions, x) &&
+      same(built_.velocities, v) && same(built_.skip, skip))
+    return true;
+  const Vec3 room = Vec3::Constant(spacing_m_);
+  built_ = {{x.begin(), x.end()}, {v.begin(), v.end()}, {skip.begin(), skip.end()},
+            triangles.size(),     low - room,           high + room};
+  return false;
 }
 
 void WallField::build(std::span<const Triangle> triangles, std::span<const Vec3> x,
                       std::span<const Vec3> v, const Vec3& low, const Vec3& high,
                       std::span<const std::uint8_t> skip) {
+  if (sameWalls(triangles, x, v, low, high, skip)) return;
   pieces_.clear();
   centroids_.clear();
-  quadPoints_.clear();
-  quadVelocities_.clear();
   largestRadius_m_ = 0;
   const double reach = table_->support_m() + 0.5 * spacing_m_;
-  const Vec3 boxLow = low.array() - reach, boxHigh = high.array() + reach;
+  const Vec3 boxLow = built_.low.array() - reach, boxHigh = built_.high.array() + reach;
   for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
     if (!skip.empty() && skip[k]) continue;
     const Triangle& t = triangles[k];
@@ -129,51 +117,63 @@ void WallField::build(std::span<const Triangle> triangles, std::span<const Vec3>
     addPiece(makePiece(a, b, c, v[t[0]], v[t[1]], v[t[2]], k), 0);
   }
   grid_.build(centroids_, {}, table_->support_m() + largestRadius_m_);
+  low_ = built_.low;
+  sortPieces();
 }
 
-void WallField::addIntegrals(const Piece& t, const Vec3& p, WallSample& out) const {
-  const std::size_t points = rule_.size();
-  const std::size_t first = (&t - pieces_.data()) * points;
-  // Far from a small piece G is smooth itself, and the arc tangent can be spared.
-  const double away2 = (t.centroid - p).squaredNorm();
-  const bool exact = away2 < std::max(9 * t.radius * t.radius, spacing_m_ * spacing_m_);
-  if (exact) out.lambda += solidAngle(t.a - p, t.b - p, t.c - p) / (4 * kPi);
-  const double offset = (t.a - p).dot(t.normal);  // r . n, the same all over the piece
-  for (std::size_t q = 0; q < points; ++q) {
-    const double r = (quadPoints_[first + q] - p).norm();
-    const KernelTable::Entry e = table_->at(r);
-    const double dA = ruleWeight_[q] * t.area;
-    if (r > 0) {
-      const double g = exact ? -e.f : 1 / (4 * kPi * r * r) - e.f;
-      out.lambda += dA * g * offset / r;
-    }
-    if (e.w == 0) continue;
-    const Vec3& v = quadVelocities_[first + q];
-    const double wA = dA * e.w;
-    out.gradLambda += wA * t.normal;
-    out.flux_s += wA * v.dot(t.normal);
-    if (offset <= 0) continue;  // a wall seen from behind does not rub
-    // 0.25 r: pieces seen edge-on have no shear distance of their own
-    const double shear = wA / std::max({offset, 0.25 * r, kLeastShearDistance * spacing_m_});
-    out.friction += shear;
-    out.frictionVelocity += shear * v;
-    out.area += wA;
+void WallField::sortPieces() {
+  std::vector<Piece> sorted;
+  sorted.reserve(pieces_.size());
+  for (int k : grid_.order()) sorted.push_back(pieces_[k]);
+  pieces_.swap(sorted);
+  arrays_.resize(pieces_.size());
+  const auto put = [&](PieceArrays::Field first, std::size_t k, const Vec3& value) {
+    for (int a = 0; a < 3; ++a) arrays_.field[first + a][k] = static_cast<float>(value[a]);
+  };
+  using P = PieceArrays;
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    const Piece& t = pieces_[k];
+    put(P::kCx, k, t.centroid - low_);
+    put(P::kAx, k, t.a - low_);
+    put(P::kBx, k, t.b - low_);
+    put(P::kGx, k, t.c - low_);
+    put(P::kNx, k, t.normal);
+    // one velocity a piece: what it varies within one is of second order
+    put(P::kVx, k, (t.va + t.vb + t.vc) / 3);
+    arrays_.field[P::kReach][k] = static_cast<float>(table_->support_m() + t.radius);
+    arrays_.field[P::kArea][k] = static_cast<float>(t.area);
+    const double edge = std::max({(t.b - t.a).norm(), (t.c - t.b).norm(), (t.a - t.c).norm()});
+    arrays_.field[P::kRule][k] = edge < kOnePoint * spacing_m_      ? 0.f
+                                 : edge < kThreePoints * spacing_m_ ? 1.f
+                                                                    : 2.f;
+    arrays_.field[P::kSpeed][k] = static_cast<float>(t.normalSpeed);
   }
-  out.normalSpeed_ms = std::max(out.normalSpeed_ms, t.normalSpeed);
 }
 
 WallSample WallField::sample(const Vec3& p) const {
   WallSample out;
-  double nearest2 = INFINITY;
-  grid_.around(p, [&](int k) {
-    const Piece& t = pieces_[k];
-    const double reach = table_->support_m() + t.radius, d2 = (t.centroid - p).squaredNorm();
-    if (d2 >= reach * reach) return;
-    addIntegrals(t, p, out);
-    if (d2 >= nearest2) return;
-    nearest2 = d2;
-    out.nearestTriangle = t.triangle;
-  });
+  const Vec3f at = (p - low_).cast<float>();
+  const WallQuadrature quadrature{&arrays_,
+                                  table_->walls(),
+                                  table_->nodesPerMetre(),
+                                  static_cast<float>(kLeastShearDistance * spacing_m_),
+                                  static_cast<float>(2 / table_->support_m()),
+                                  static_cast<float>(table_->selfW()),
+                                  static_cast<float>(table_->support_m()),
+                                  static_cast<float>(spacing_m_),
+                                  table_->isCubicSpline()};
+  WallSums sums;
+  grid_.rowsAround(
+      p, [&](int first, int last) { quadrature.add(at.x(), at.y(), at.z(), first, last, sums); });
+  if (sums.nearest < 0) return out;
+  out.lambda = sums.lambda;
+  out.flux_s = sums.flux;
+  out.gradLambda = Vec3(sums.gradLambda.data());
+  out.friction = sums.friction;
+  out.frictionVelocity = Vec3(sums.frictionVelocity.data());
+  out.area = sums.area;
+  out.normalSpeed_ms = sums.normalSpeed;
+  out.nearestTriangle = pieces_[sums.nearest].triangle;
   return out;
 }
 
@@ -186,15 +186,24 @@ void WallField::contacts(const Vec3& p, double radius_m, std::vector<Contact>& o
   };
   thread_local std::vector<Hit> hits;
   hits.clear();
-  grid_.around(p, [&](int k) {
+  // a hair more for the single precision of the choice
+  const float reach = static_cast<float>(radius_m + 1e-4 * spacing_m_);
+  const Vec3f at = (p - low_).cast<float>();
+  thread_local std::vector<int> near;
+  std::size_t count = 0;
+  grid_.rowsAround(p, [&](int first, int last) {
+    near.resize(std::max(near.size(), count + last - first + 8));
+    count += nearPieces(arrays_, at.x(), at.y(), at.z(), reach,
+                        static_cast<float>(table_->support_m()), first, last, &near[count]);
+  });
+  for (std::size_t e = 0; e < count; ++e) {
+    const int k = near[e];
     const Piece& t = pieces_[k];
-    const double reach = radius_m + t.radius;
-    if ((t.centroid - p).squaredNorm() > reach * reach) return;
     const Vec3 bary = closestBarycentric(p, t.a, t.b, t.c);
     const Vec3 q = t.a * bary[0] + t.b * bary[1] + t.c * bary[2];
     const double d2 = (p - q).squaredNorm();
     if (d2 < radius_m * radius_m) hits.push_back({d2, k, bary, q});
-  });
+  }
   if (hits.empty()) return;
   std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
     return a.d2 != b.d2 ? a.d2 < b.d2 : a.piece < b.piece;

@@ -15,6 +15,7 @@
 
 #include "bolus/kernels.h"
 #include "bolus/neighbours.h"
+#include "bolus/wall_integrals.h"
 #include "core/tri_mesh.h"
 
 namespace swallowclip::bolus {
@@ -48,7 +49,6 @@ NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> positions,
 
 class WallField {
  public:
-  /// 3 quadrature points per triangle at coarse spacing, 7 at fine (below 1.5 mm).
   WallField(const KernelTable& table, double spacing_m);
 
   /// Takes the triangles within reach of the box [low, high], cut where they are large, but none
@@ -73,15 +73,25 @@ class WallField {
   void addPiece(const Piece& whole, int depth);
   Piece makePiece(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& va, const Vec3& vb,
                   const Vec3& vc, int triangle) const;
-  void addIntegrals(const Piece& t, const Vec3& p, WallSample& out) const;
+  bool sameWalls(std::span<const Triangle> triangles, std::span<const Vec3> positions,
+                 std::span<const Vec3> velocities, const Vec3& low, const Vec3& high,
+                 std::span<const std::uint8_t> skip);
+  void sortPieces();
 
   const KernelTable* table_;
   double spacing_m_, longestEdge_m_;
-  std::span<const Vec3> rule_;  // barycentric quadrature points
-  std::span<const double> ruleWeight_;
-  std::vector<Piece> pieces_;
-  std::vector<Vec3> centroids_, quadPoints_, quadVelocities_;
+  std::vector<Piece> pieces_;  // in the order of their cells
+  PieceArrays arrays_;         // the same, from low_
+  Vec3 low_ = Vec3::Zero();
+  std::vector<Vec3> centroids_;
   double largestRadius_m_ = 0;
   PointGrid grid_;
+  // what the pieces were made from, since walls often stand still
+  struct Built {
+    std::vector<Vec3> positions, velocities;
+    std::vector<std::uint8_t> skip;
+    std::size_t triangles = 0;
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  } built_;
 };
 }  // namespace swallowclip::bolus

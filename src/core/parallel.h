@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Fixed chunks, so that results never depend on the number of threads: a caller writes either
-// per index, or per chunk and reduces the chunks in order. Workers sleep on a condition variable.
+// per index, or per chunk and reduces the chunks in order. Workers look for work for some
+// microseconds, then sleep.
 #pragma once
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -23,10 +25,11 @@ class ThreadPool {
 
   /// Calls body(begin, end, chunkIndex) for [0,n) cut in chunks of `chunk`; returns when all are
   /// done. Chunk boundaries depend on n and chunk only.
-  void forChunks(int n, int chunk, const std::function<void(int, int, int)>& body);
+  /// Fewer than `alone` items are left to the calling thread: waking others would take longer.
+  void forChunks(int n, int chunk, const std::function<void(int, int, int)>& body, int alone = 0);
 
   /// Sum of term(begin,end) over chunks, added in chunk order.
-  double sumChunks(int n, int chunk, const std::function<double(int, int)>& term);
+  double sumChunks(int n, int chunk, const std::function<double(int, int)>& term, int alone = 0);
 
  private:
   void workerLoop();
@@ -35,9 +38,10 @@ class ThreadPool {
   std::vector<std::thread> workers_;
   std::mutex mutex_;
   std::condition_variable wake_, done_;
-  const std::function<void(int, int, int)>* body_ = nullptr;
-  int n_ = 0, chunk_ = 1, nextChunk_ = 0, chunkCount_ = 0, finished_ = 0;
-  std::uint64_t generation_ = 0;
+  static constexpr std::uint64_t kRound = 1ull << 32;
+  std::atomic<const std::function<void(int, int, int)>*> body_{nullptr};
+  std::atomic<int> n_{0}, chunk_{1}, count_{0}, finished_{0}, asleep_{0};
+  std::atomic<std::uint64_t> ticket_{0};  // round number times kRound plus the next chunk
   bool stop_ = false;
 };
 }  // namespace swallowclip

@@ -37,11 +37,22 @@ TEST_P(EveryKernel, SlopeIsTheDerivative) {
 TEST_P(EveryKernel, TableAgrees) {
   const Kernel k(GetParam(), 4e-3);
   const KernelTable table(k);
-  for (double r = 1e-5; r < 3.99e-3; r += 1.3e-5) EXPECT_NEAR(table.at(r).w, k.w(r), 2e-6 * k.w(0));
-  // F meets 1 / (4 pi r^2) at the support
   const double h = k.support_m();
-  EXPECT_NEAR(table.at(h * 0.999999).f, 1 / (4 * kPi * h * h), 1e-5 / (h * h));
-  EXPECT_DOUBLE_EQ(table.at(2 * h).f, 1 / (16 * kPi * h * h));
+  for (double r = 1e-5; r < 0.9999 * h; r += 1.3e-5) {
+    const double at = r * table.nodesPerMetre();
+    const int node = static_cast<int>(at);
+    const double part = at - node;
+    const KernelTable::Pair& p = table.pairs()[node];
+    const KernelTable::Wall& w = table.walls()[node];
+    EXPECT_NEAR(p.w + part * p.wStep, k.w(r), 4e-6 * k.w(0));
+    EXPECT_NEAR(w.w + part * w.wStep, k.w(r), 4e-6 * k.w(0));
+    EXPECT_NEAR((p.slope + part * p.slopeStep) * r, k.slope(r), 1e-5 * k.w(0) / h);
+  }
+  // F meets 1 / (4 pi r^2) at the support
+  const KernelTable::Wall& last = table.walls()[KernelTable::kIntervals - 1];
+  EXPECT_NEAR((last.f + last.fStep) * h * h * h * 4 * kPi, 1, 1e-4);
+  const KernelTable::Pair& end = table.pairs()[KernelTable::kIntervals];
+  EXPECT_EQ(end.w + end.slope + end.wStep + end.slopeStep, 0);
 }
 
 TEST_P(EveryKernel, NameRoundTrip) {
