@@ -4,6 +4,7 @@
 #include "cli/run.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/pipeline.h"
+#include "verify/verify.h"
 
 int main(int argc, char** argv) {
   using namespace swallowclip;
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
       {cli::kImport, pipeline::importMeshes},
       {cli::kList, pipeline::list},
       {cli::kCheck, pipeline::check},
+      {cli::kVerify, verify::verify},
   };
   return cli::run({argv + std::min(argc, 1), argv + argc}, data ? data : SWALLOWCLIP_SOURCE_DIR,
                   handlers);

@@ -141,6 +141,19 @@ Result<void> applyJson(const Words&, RunOptions& options) {
   options.json = true;
   return {};
 }
+Result<void> applySubset(const Words& words, RunOptions& options) {
+  return store(oneOf("--subset", words[0], {"short", "all"}), options.verify.subset);
+}
+Result<void> applyVerifySolver(const Words& words, RunOptions& options) {
+  return store(oneOf("--solver", words[0], {"dfsph", "wcsph"}), options.verify.solver);
+}
+Result<void> applyVerifySpacing(const Words& words, RunOptions& options) {
+  return store(number("--spacing-mm", words[0], 0.2, 10), options.verify.spacing_mm);
+}
+Result<void> applyVerifyOut(const Words& words, RunOptions& options) {
+  options.verify.out = words[0];
+  return {};
+}
 Result<void> applyFiles(const Words& words, RunOptions& options) {
   options.files.assign(words.begin(), words.end());
   return {};
@@ -157,6 +170,7 @@ constexpr CommandRow kCommands[] = {
     {kImport, "import", "Make a scene from meshes of one's own"},
     {kList, "list", "Show what can be chosen"},
     {kCheck, "check", "Check scene, swallow, bolus and preset files"},
+    {kVerify, "verify", "Run the fluid solver on cases with known answers"},
 };
 
 constexpr OptionRow kOptions[] = {
@@ -186,8 +200,8 @@ constexpr OptionRow kOptions[] = {
      applyText<&RunOptions::history>},
     {"--out", "DIR", "Folder for results (default output)", kPictures | kExport | kImport, kImport,
      false, applyText<&RunOptions::out>},
-    {"--jobs", "N", "Threads to use (default: all processors)", kSwallow | kDraw, 0, false,
-     applyJobs},
+    {"--jobs", "N", "Threads to use (default: all processors)", kSwallow | kDraw | kVerify, 0,
+     false, applyJobs},
     {"history", "RUN.h5", "History file to read", kMeasure | kDraw | kExport,
      kMeasure | kDraw | kExport, false, applyText<&RunOptions::history>},
     {"input", "DIR|FILE", "Meshes: a folder or one file", kImport, kImport, false,
@@ -195,6 +209,16 @@ constexpr OptionRow kOptions[] = {
     {"topic", "components|scores|views|presets|boluses|scenes", "What to list", kList, kList, false,
      applyTopic},
     {"files", "FILE...", "Files to check", kCheck, kCheck, true, applyFiles},
+    {"cases", "CASE.json...", "Case files (default: all in scenes/verify)", kVerify, 0, true,
+     applyFiles},
+    {"--subset", "short|all", "Which of the shipped cases (default all)", kVerify, 0, false,
+     applySubset},
+    {"--solver", "dfsph|wcsph", "Fluid solver instead of that of every case", kVerify, 0, false,
+     applyVerifySolver},
+    {"--spacing-mm", "MM", "Particle spacing instead of that of every case, 0.2 to 10", kVerify, 0,
+     false, applyVerifySpacing},
+    {"--out", "DIR", "Folder for verify.json and charts (default output/verify)", kVerify, 0, false,
+     applyVerifyOut},
 };
 }  // namespace
 

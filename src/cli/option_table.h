@@ -20,6 +20,7 @@ enum CommandBit : unsigned {
   kImport = 32,
   kList = 64,
   kCheck = 128,
+  kVerify = 256,
 };
 
 struct CommandRow {

@@ -14,6 +14,14 @@ struct TrackSetting {
   double value = 0;
 };
 
+/// `verify` has its own defaults: what is left out stays as the case file says.
+struct VerifyOptions {
+  std::string subset = "all";  ///< or short; only without files
+  std::string solver;          ///< empty: of the case
+  double spacing_mm = 0;       ///< 0: of the case
+  std::filesystem::path out = "output/verify";
+};
+
 struct RunOptions {
   int component = 0;                   ///< 1..17; 0: none, the swallow file stands alone
   std::vector<int> scores;             ///< intended scores, ascending; empty: none
@@ -34,7 +42,8 @@ struct RunOptions {
   std::filesystem::path input;    ///< import: folder or file of meshes
   std::filesystem::path map;      ///< import: mapping file
   std::string topic;              ///< list: components, scores, views, presets, boluses, scenes
-  std::vector<std::filesystem::path> files;  ///< check
+  std::vector<std::filesystem::path> files;  ///< check, verify
+  VerifyOptions verify;
 
   /// Folder that holds scenes/, render_presets/ and shaders/.
   std::filesystem::path data;

@@ -28,6 +28,15 @@ std::string wordOf(std::string text) {
   return text.substr(0, 40);
 }
 
+BolusDef readBolus(const JsonNode& node, std::string name) {
+  BolusDef def{std::move(name), node.text("description", ""), readFluid(node)};
+  if (node.exists() && !isFileWord(def.name))
+    node.fail("a bolus name has 1 to 40 lower-case letters, digits or '-', and is not \"none\"",
+              "Rename it; it becomes part of file names.");
+  return def;
+}
+}  // namespace
+
 /// Newtonian, Carreau, power law and Herschel-Bulkley each take their own numbers and no others.
 bolus::Fluid readFluid(const JsonNode& node) {
   using bolus::RheologyModel;
@@ -56,6 +65,9 @@ bolus::Fluid readFluid(const JsonNode& node) {
       fluid.index = node.number("index", kLowestIndex, kHighestIndex);
       break;
   }
+  fluid.surfaceTension_Nm = node.number("surface_tension_Nm", 0, 1, 0);
+  if (fluid.surfaceTension_Nm > 0)
+    fluid.contactAngle_deg = node.number("contact_angle_deg", 0, 180, fluid.contactAngle_deg);
   fluid.minViscosity_Pas =
       node.number("minViscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.minViscosity_Pas);
   fluid.maxViscosity_Pas =
@@ -64,16 +76,6 @@ bolus::Fluid readFluid(const JsonNode& node) {
     node.fail(problem, "Correct the numbers of this bolus.");
   return fluid;
 }
-
-BolusDef readBolus(const JsonNode& node, std::string name) {
-  BolusDef def{std::move(name), node.text("description", ""), readFluid(node)};
-  if (node.exists() && !isFileWord(def.name))
-    node.fail("a bolus name has 1 to 40 lower-case letters, digits or '-', and is not \"none\"",
-              "Rename it; it becomes part of file names.");
-  return def;
-}
-
-}  // namespace
 
 Result<BolusDef> loadBolusFile(const std::filesystem::path& path) {
   auto file = JsonFile::load(path);

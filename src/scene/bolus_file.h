@@ -8,8 +8,12 @@
 
 #include "bolus/fluid.h"
 #include "core/error.h"
+#include "scene/json_reader.h"
 
 namespace swallowclip::scene {
+
+/// Density and rheology out of any object that holds their keys; other keys are left alone.
+bolus::Fluid readFluid(const JsonNode& node);
 
 struct BolusDef {
   std::string name;         ///< as in file names: lower-case letters, digits, '-'

@@ -108,7 +108,7 @@ TEST(Architecture, EveryLibraryHasItsRoom) {
   const std::vector<std::pair<const char*, std::set<std::string>>> owners{
       {"nlohmann/", {"scene"}},
       {"(GL|EGL|KHR)/", {"render"}},
-      {"(pango|cairo|freetype)", {"render"}},
+      {"(pango|cairo|freetype)", {"render", "plot"}},
       {"lib(av|sw)[a-z]+/", {"video", "overlay"}},
       {"x264", {"video"}},
       {"(hdf5|H5)", {"frame"}},

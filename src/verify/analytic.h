@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// The formulas themselves, free of case files. SI units.
+#pragma once
+#include "bolus/fluid.h"
+
+namespace swallowclip::verify {
+
+/// Morris, Fox & Zhu 1997, eq. 20 and 22: walls at y = 0 and L, kinematic viscosity nu (m2/s).
+double couetteStart_ms(double y, double t, double L, double wall_ms, double nu);
+double planePoiseuilleStart_ms(double y, double t, double L, double force_ms2, double nu);
+/// Szymanski 1932: the same in a pipe of radius R.
+double pipePoiseuilleStart_ms(double r, double t, double R, double force_ms2, double nu);
+
+/// Steady flow at a distance from the middle of a plane channel (half width H) or from the axis of
+/// a pipe (radius H) whose wall stress is `wallStress_Pa`; any rheology that fluid.h knows, without
+/// its clips. Bird, Armstrong & Hassager 1987, ch. 4.
+double steadyFlow_ms(const bolus::Fluid& fluid, double distance, double H, double wallStress_Pa);
+
+/// Shear rate at which the fluid bears a stress.
+double shearRateAt_s(const bolus::Fluid& fluid, double stress_Pa);
+
+/// Shapiro, Jaffrin & Weinberg 1969: time-mean flow at zero pressure rise, in units of
+/// (half width x wave speed) per half channel and unit depth, or of (pi a2 c).
+double shapiroPlane(double occlusion);
+double shapiroTube(double occlusion);
+
+/// Huppert 1982: front of a viscous gravity current of given area (per unit width, m2, on one side
+/// of its plane of symmetry) or volume (m3, round).
+double huppertPlane_m(double area_m2, double t, double g_ms2, double nu);
+double huppertRound_m(double volume_m3, double t, double g_ms2, double nu);
+
+/// Contact angle (rad) of a spherical cap of given volume whose centre of mass is this high.
+double capAngle_rad(double volume_m3, double centre_m);
+double capCentre_m(double volume_m3, double angle_rad);
+}  // namespace swallowclip::verify

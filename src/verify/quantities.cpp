@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include "verify/quantities.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "verify/analytic.h"
+
+namespace swallowclip::verify {
+namespace {
+/// Position across the axis of a round room: tubes lie along x, all else stands along z.
+Vec3 fromAxis(const CaseDef& def, const Vec3& p) {
+  return def.domain.shape == Shape::tube ? Vec3(0, p.y(), p.z()) : Vec3(p.x(), p.y(), 0);
+}
+int axisOf(const std::string& word) {
+  return std::clamp(word.empty() ? 2 : word.back() - 'x', 0, 2);
+}
+
+bool within(const QuantityDef& q, const Vec3& p) {
+  for (int k = 0; k < 3; ++k)
+    if (!(p[k] >= q.within_m[k].first && p[k] <= q.within_m[k].second)) return false;
+  return true;
+}
+
+double field(const QuantityDef& q, const Snapshot& s, std::size_t i) {
+  const Vec3& v = s.velocities[i];
+  if (q.of.starts_with("velocity-")) return v[axisOf(q.of)];
+  if (q.of == "pressure") return s.pressure_Pa[i];
+  if (q.of == "density-error") return s.densityRatio[i] - 1;
+  if (q.of == "speed") return v.norm();
+  const Vec3 r = fromAxis(*s.def, s.positions[i]);
+  const double distance = r.norm();
+  if (distance <= 0) return 0;
+  if (q.of == "radial") return v.dot(r) / distance;
+  const Vec3 axis = s.def->domain.shape == Shape::tube ? Vec3::UnitX() : Vec3::UnitZ();
+  return v.dot(axis.cross(r)) / distance;  // swirl
+}
+
+double coordinate(const QuantityDef& q, const Snapshot& s, const Vec3& p) {
+  if (q.along == "radius") return fromAxis(*s.def, p).norm();
+  if (q.along == "up") return p.dot(s.up);
+  return p[axisOf(q.along)];
+}
+
+/// Particles in one row across a thin periodic room, a handful elsewhere: the front is their mean.
+std::size_t rowCount(const Snapshot& s) {
+  const DomainDef& d = s.def->domain;
+  if (d.shape == Shape::box && d.periodic[1])
+    return std::max<std::size_t>(1, std::lround(d.size_m.y() / s.spacing_m));
+  return 5;
+}
+
+/// Mean of the `count` largest, plus half a spacing from particle centres to the surface.
+double farthest(std::vector<double> values, std::size_t count, double spacing) {
+  if (values.empty()) return 0;
+  count = std::clamp<std::size_t>(count, 1, values.size());
+  std::ranges::nth_element(values, values.begin() + static_cast<long>(count) - 1, std::greater<>());
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k) sum += values[k];
+  return sum / static_cast<double>(count) + spacing / 2;
+}
+
+std::vector<double> along(const Snapshot& s, const QuantityDef& q, double sign) {
+  std::vector<double> values;
+  for (const Vec3& p : s.positions)
+    if (within(q, p)) values.push_back(sign * p[axisOf(q.along)]);
+  return values;
+}
+
+double mean(const Snapshot& s, const QuantityDef& q, auto&& value) {
+  double sum = 0, n = 0;
+  for (std::size_t i = 0; i < s.positions.size(); ++i)
+    if (within(q, s.positions[i])) sum += value(i), ++n;
+  return n > 0 ? sum / n : 0;
+}
+
+/// Mean height of the topmost layer: as many particles as one layer of the floor has.
+double surfaceHeight(const Snapshot& s, const QuantityDef& q) {
+  const DomainDef& d = s.def->domain;
+  double area =
+      d.shape == Shape::cylinder ? kPi * d.radius_m * d.radius_m : d.size_m.x() * d.size_m.y();
+  if (s.def->motion.kind == MotionKind::piston && d.shape == Shape::box)
+    area *= 1 - s.def->motion.speed.travel(s.time_s) / d.size_m[s.def->motion.axis];
+  const auto layer = static_cast<std::size_t>(std::lround(area / (s.spacing_m * s.spacing_m)));
+  QuantityDef up = q;
+  up.along = "z";
+  return farthest(along(s, up, 1), layer, s.spacing_m);
+}
+
+/// Beside a plug of speed U the flow falls as U - u ~ (r - plug)^(1 + 1/n): a straight line through
+/// (U - u)^(n / (n + 1)) of the sheared bins meets zero at the plug's edge.
+double plugHalfWidth(const Snapshot& s) {
+  QuantityDef q;
+  q.kind = "profile";
+  q.of = "velocity-x";
+  q.along = s.def->domain.shape == Shape::tube ? "radius" : "z";
+  ProfileSum sum;
+  sum.add(q, s, [](const Probe&) { return 0.0; });
+  const auto points = sum.points();
+  double fastest = 0;
+  for (const auto& p : points) fastest = std::max(fastest, std::abs(p.measured));
+  const double n = s.def->fluid.index, power = n / (n + 1);
+  const double middle = q.along == "z" ? s.def->domain.size_m.z() / 2 : 0;
+  double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const auto& p : points) {
+    const double lost = 1 - std::abs(p.measured) / std::max(fastest, 1e-300);
+    if (lost < 0.08 || lost > 0.95) continue;  // neither the rounded edge nor the wall's own bin
+    const double x = std::abs(p.along - middle), y = std::pow(lost, power);
+    sw += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  const double slope = (sw * sxy - sx * sy) / (sw * sxx - sx * sx);
+  return sw < 2 ? 0 : (sx - sy / slope) / sw;
+}
+
+struct Row {
+  const char* name;
+  Unit unit;
+  double (*value)(const Snapshot&, const QuantityDef&);
+};
+constexpr Unit kMm{"mm", 1e3}, kMms{"mm/s", 1e3}, kPa{"Pa", 1}, kRatio{"-", 1};
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> table{
+      {"front", kMm,
+       [](const Snapshot& s, const QuantityDef& q) {
+         return farthest(along(s, q, 1), rowCount(s), s.spacing_m);
+       }},
+      {"spread", kMm,
+       [](const Snapshot& s, const QuantityDef& q) {
+         return (farthest(along(s, q, 1), rowCount(s), s.spacing_m) +
+                 farthest(along(s, q, -1), rowCount(s), s.spacing_m)) /
+                2;
+       }},
+      {"spread-round", kMm,
+       [](const Snapshot& s, const QuantityDef& q) {
+         // mean over 24 directions of the farthest in each
+         std::vector<double> reach(24, 0.0);
+         const Vec3 c(mean(s, q, [&](std::size_t i) { return s.positions[i].x(); }),
+                      mean(s, q, [&](std::size_t i) { return s.positions[i].y(); }), 0);
+         for (const Vec3& p : s.positions) {
+           const double turn = std::atan2(p.y() - c.y(), p.x() - c.x()) / (2 * kPi) + 0.5;
+           const auto k = std::min<std::size_t>(23, static_cast<std::size_t>(turn * 24));
+           reach[k] = std::max(reach[k], std::hypot(p.x() - c.x(), p.y() - c.y()));
+         }
+         double sum = 0;
+         for (double r : reach) sum += r;
+         return sum / 24 + s.spacing_m / 2;
+       }},
+      {"surface-height", kMm, surfaceHeight},
+      {"centre-of-mass", kMm,
+       [](const Snapshot& s, const QuantityDef& q) {
+         return mean(s, q, [&](std::size_t i) { return s.positions[i][axisOf(q.along)]; });
+       }},
+      {"mean-velocity", kMms,
+       [](const Snapshot& s, const QuantityDef& q) {
+         return mean(s, q, [&](std::size_t i) { return s.velocities[i][axisOf(q.along)]; });
+       }},
+      {"max-speed", kMms,
+       [](const Snapshot& s, const QuantityDef& q) {
+         double most = 0;
+         for (std::size_t i = 0; i < s.positions.size(); ++i)
+           if (within(q, s.positions[i])) most = std::max(most, s.velocities[i].norm());
+         return most;
+       }},
+      {"mean-pressure", kPa,
+       [](const Snapshot& s, const QuantityDef& q) {
+         return mean(s, q, [&](std::size_t i) { return s.pressure_Pa[i]; });
+       }},
+      {"kinetic-energy",
+       {"uJ", 1e6},
+       [](const Snapshot& s, const QuantityDef&) {
+         double sum = 0;
+         for (const Vec3& v : s.velocities) sum += v.squaredNorm();
+         return 0.5 * s.def->fluid.density_kgm3 * s.particleVolume_m3 * sum;
+       }},
+      {"momentum-drift", kRatio,
+       [](const Snapshot& s, const QuantityDef&) {
+         Vec3 sum = Vec3::Zero();
+         for (const Vec3& v : s.velocities) sum += v;
+         sum *= s.def->fluid.density_kgm3 * s.particleVolume_m3;
+         return (sum - s.firstMomentum).norm() / std::max(s.firstMomentum.norm(), 1e-300);
+       }},
+      {"flow",
+       {"mm3/s", 1e9},
+       [](const Snapshot& s, const QuantityDef& q) {
+         const int k = axisOf(q.along);
+         double sum = 0;
+         for (const Vec3& v : s.velocities) sum += v[k];
+         const double length =
+             s.def->domain.shape == Shape::tube ? s.def->domain.length_m : s.def->domain.size_m[k];
+         return sum * s.particleVolume_m3 / length;
+       }},
+      {"density-error", kRatio,
+       [](const Snapshot& s, const QuantityDef& q) {
+         return mean(s, q, [&](std::size_t i) { return std::max(0.0, s.densityRatio[i] - 1); });
+       }},
+      {"plug-half-width", kMm,
+       [](const Snapshot& s, const QuantityDef&) { return plugHalfWidth(s); }},
+      {"cap-angle",
+       {"deg", 180 / kPi},
+       [](const Snapshot& s, const QuantityDef& q) {
+         const double volume = s.particleVolume_m3 * static_cast<double>(s.positions.size());
+         return capAngle_rad(volume, mean(s, q, [&](std::size_t i) { return s.positions[i].z(); }));
+       }},
+  };
+  return table;
+}
+
+const Row* findRow(const std::string& name) {
+  for (const Row& row : rows())
+    if (name == row.name) return &row;
+  return nullptr;
+}
+}  // namespace
+
+std::vector<std::string> quantityNames() {
+  std::vector<std::string> names{"profile"};
+  for (const Row& row : rows()) names.emplace_back(row.name);
+  return names;
+}
+std::vector<std::string> fieldNames() {
+  return {"velocity-x", "velocity-y", "velocity-z", "speed",
+          "swirl",      "radial",     "pressure",   "density-error"};
+}
+std::vector<std::string> coordinateNames() {
+  return {"x", "y", "z", "radius", "up"};
+}
+
+Unit unitOf(const QuantityDef& q) {
+  if (q.kind != "profile") return findRow(q.kind)->unit;
+  return q.of == "pressure" ? kPa : q.of == "density-error" ? kRatio : kMms;
+}
+
+double measureSeries(const QuantityDef& q, const Snapshot& s) {
+  const Row* row = findRow(q.kind);
+  return row ? row->value(s, q) : 0;
+}
+
+void ProfileSum::add(const QuantityDef& q, const Snapshot& s, const Reference& reference) {
+  if (count_.empty()) {
+    double low = INFINITY, high = -INFINITY;
+    for (const Vec3& p : s.positions) {
+      if (!within(q, p)) continue;
+      low = std::min(low, coordinate(q, s, p));
+      high = std::max(high, coordinate(q, s, p));
+    }
+    if (!(low <= high)) return;
+    // particles lie half a spacing inside the fluid's ends
+    low_ = low - s.spacing_m / 2;
+    const double range = high - low + s.spacing_m;
+    const int bins = q.bins > 0 ? q.bins : std::max(2, int(std::lround(range / s.spacing_m)));
+    width_ = range / bins;
+    for (auto* sum : {&count_, &along_, &measured_, &reference_}) sum->assign(bins, 0.0);
+  }
+  for (std::size_t i = 0; i < s.positions.size(); ++i) {
+    const Vec3& p = s.positions[i];
+    if (!within(q, p)) continue;
+    const double at = coordinate(q, s, p);
+    const auto k = static_cast<std::size_t>(
+        std::clamp((at - low_) / width_, 0.0, static_cast<double>(count_.size()) - 0.5));
+    ++count_[k];
+    along_[k] += at;
+    measured_[k] += field(q, s, i);
+    reference_[k] += reference({p, at, s.time_s});
+  }
+}
+
+std::vector<ProfileSum::Point> ProfileSum::points() const {
+  std::vector<Point> points;
+  for (std::size_t k = 0; k < count_.size(); ++k)
+    if (count_[k] > 0)
+      points.push_back(
+          {along_[k] / count_[k], measured_[k] / count_[k], reference_[k] / count_[k]});
+  return points;
+}
+}  // namespace swallowclip::verify
