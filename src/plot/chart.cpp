@@ -211,6 +211,15 @@ cairo_status_t append(void* to, const unsigned char* data, unsigned int length) 
   return CAIRO_STATUS_SUCCESS;
 }
 
+/// cairo numbers surfaces over the life of the process; the same drawing gets the same bytes.
+void dropSurfaceNumber(std::string& svg) {
+  const std::string_view key = "id=\"surface";
+  const std::size_t at = svg.find(key);
+  if (at == std::string::npos) return;
+  const std::size_t from = at + key.size(), to = svg.find('"', from);
+  svg.erase(from, to - from);
+}
+
 Result<void> publish(cairo_status_t status, const std::string& bytes,
                      const std::filesystem::path& file) {
   if (status != CAIRO_STATUS_SUCCESS)
@@ -231,6 +240,7 @@ Result<void> writeSvg(const Chart& chart, const std::filesystem::path& file) {
     cairo_surface_finish(surface.get());
     status = cairo_surface_status(surface.get());
   }
+  dropSurfaceNumber(bytes);
   return publish(status, bytes, file);
 }
 

@@ -61,7 +61,7 @@ struct FillDef {
 
 enum class StartKind { rest, rotation, taylorGreen };
 
-enum class ErrorKind { max, rms, mean, each, absolute };
+enum class ErrorRule { max, rms, mean, each, absolute };
 
 /// What is measured; `kind` is a word of quantities.h.
 struct QuantityDef {
@@ -86,7 +86,7 @@ struct CheckDef {
   QuantityDef quantity;
   ReferenceDef reference;
   double tolerance = 0.02;
-  ErrorKind error = ErrorKind::max;
+  ErrorRule error = ErrorRule::max;
   double from_s = 0;            ///< samples before it are not compared
   std::optional<double> align;  ///< series: shift in time so that both have this value together
 };

@@ -181,7 +181,8 @@ void readTimes(const JsonNode& root, CaseDef& def) {
   if (root.has("samples_s")) def.samples_s = root.numbers("samples_s");
   if (root.has("every_s")) {
     const double every = root.number("every_s", def.duration_s / kMostSamples, def.duration_s);
-    for (int k = 1; k * every <= def.duration_s * (1 + 1e-12) && def.samples_s.size() < kMostSamples; ++k)
+    for (int k = 1;
+         k * every <= def.duration_s * (1 + 1e-12) && def.samples_s.size() < kMostSamples; ++k)
       def.samples_s.push_back(std::min(k * every, def.duration_s));
   }
   if (def.samples_s.empty()) def.samples_s = {def.duration_s};
@@ -214,7 +215,8 @@ void checkGeometry(const JsonNode& root, const CaseDef& def) {
   for (double spacing_m : spacings) {
     auto domain = Domain::build(def, spacing_m);
     if (!domain)
-      return root.fail(domain.error().place + ": " + domain.error().problem, domain.error().remedy);
+      return root.fail(fmt::format("{}: {}", domain.error().place, domain.error().problem),
+                       domain.error().remedy);
     if (const double least = domain->narrowest_m(); spacing_m > least)
       return root.member("spacing_mm")
           .fail(fmt::format("spacing of {:.3g} mm in a domain {:.3g} mm wide", spacing_m / kMm,

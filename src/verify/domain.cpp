@@ -144,6 +144,11 @@ Result<Domain> Domain::build(const CaseDef& def, double spacing_m) {
       share *= shape.size_m[k] / (high[k] - low[k]);
     }
     d.volume_m3_ = shape.size_m.prod();
+    if (def.motion.kind == MotionKind::peristalsis) {
+      const double crest = def.motion.occlusion * shape.size_m.z() / 2;
+      d.low_m_.z() -= crest;
+      d.high_m_.z() += crest;
+    }
     if (d.period_m_.minCoeff() <= 0) mesh = boxMesh(low, high, edge);
   } else if (shape.shape == Shape::cylinder) {
     mesh = roundMesh(2, shape.radius_m, 0, shape.length_m, edge);
@@ -219,9 +224,10 @@ bool Domain::inside(const Vec3& p) const {
       return p.x() >= 0 && p.x() < d.length_m &&
              p.tail<2>().norm() < waveHalfWidth_m(*def_, p.x(), 0);
     case Shape::box:
-      if (def_->motion.kind == MotionKind::peristalsis &&
-          std::abs(p.z() - meanHalfWidth_m(*def_)) >= waveHalfWidth_m(*def_, p.x(), 0))
-        return false;
+      if (def_->motion.kind == MotionKind::peristalsis)
+        return (p.head<2>().array() >= 0).all() &&
+               (p.head<2>().array() < d.size_m.head<2>().array()).all() &&
+               std::abs(p.z() - meanHalfWidth_m(*def_)) < waveHalfWidth_m(*def_, p.x(), 0);
       return (p.array() >= 0).all() && (p.array() < d.size_m.array()).all();
     case Shape::mesh:
       return windingNumber(p, rest_, walls_->triangles) > 0.5;

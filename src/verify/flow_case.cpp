@@ -157,7 +157,7 @@ bool referToSeries(const CheckDef& check, const Reference& reference, Curve& cur
 }
 
 /// Error of one curve by the check's rule; the worst point's values with it.
-double errorOf(ErrorKind kind, const Curve& curve, double& measured, double& reference) {
+double errorOf(ErrorRule kind, const Curve& curve, double& measured, double& reference) {
   double scale = 0, worst = -1, squares = 0, sum = 0;
   for (const auto& p : curve.points) scale = std::max(scale, std::abs(p.reference));
   for (const auto& p : curve.points) {
@@ -165,14 +165,14 @@ double errorOf(ErrorKind kind, const Curve& curve, double& measured, double& ref
     squares += difference * difference;
     sum += difference;
     const double own =
-        kind == ErrorKind::each ? difference / std::max(std::abs(p.reference), 1e-300) : difference;
+        kind == ErrorRule::each ? difference / std::max(std::abs(p.reference), 1e-300) : difference;
     if (!(own <= worst)) worst = own, measured = p.measured, reference = p.reference;
   }
   const double n = static_cast<double>(curve.points.size());
   if (n == 0) return INFINITY;
-  if (kind == ErrorKind::absolute || kind == ErrorKind::each) return worst;
-  const double value = kind == ErrorKind::rms    ? std::sqrt(squares / n)
-                       : kind == ErrorKind::mean ? sum / n
+  if (kind == ErrorRule::absolute || kind == ErrorRule::each) return worst;
+  const double value = kind == ErrorRule::rms    ? std::sqrt(squares / n)
+                       : kind == ErrorRule::mean ? sum / n
                                                  : worst;
   return value / std::max(scale, 1e-300);
 }
@@ -185,7 +185,7 @@ CheckResult judge(const CheckDef& check, const Reference& reference, std::vector
   r.series = check.quantity.kind != "profile";
   r.xLabel = r.series ? "time (s)" : check.quantity.along + " (mm)";
   r.tolerance = check.tolerance;
-  r.absolute = check.error == ErrorKind::absolute;
+  r.absolute = check.error == ErrorRule::absolute;
   if (r.series && !curves.empty() && !referToSeries(check, reference, curves[0])) {
     r.error = INFINITY;
     r.title += " (never reached the value to align at)";

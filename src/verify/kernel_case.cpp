@@ -23,9 +23,7 @@ double overBall(const Kernel& kernel, F f) {
 }
 
 CheckResult check(const std::string& title, double measured, double reference, double tolerance) {
-  CheckResult c;
-  c.title = title;
-  c.unit = "-";
+  CheckResult c{.title = title, .unit = std::string(1, '-')};
   c.measured = measured;
   c.reference = reference;
   c.error = std::abs(measured - reference) / std::max(std::abs(reference), 1e-300);
@@ -46,11 +44,15 @@ CaseResult runKernelCase(const CaseDef& def) {
     const double H = kernel.support_m();
     const std::string name = bolus::name(kind);
     const double whole = overBall(kernel, [&](double r) { return kernel.w(r); });
-    result.checks.push_back(check(name + ": integral of W", whole, 1, def.kernelTolerance));
-    // integral of x dW/dx is -1 by parts, whatever the kernel, if it ends at zero
+    result.checks.push_back(
+        check(fmt::format("{}: integral of W", name), whole, 1, def.kernelTolerance));
+    // by parts: -1, plus what a kernel cut off before it reaches zero has on its rim
     const double moment = overBall(kernel, [&](double r) { return r * kernel.slope(r) / 3; });
-    result.checks.push_back(check(name + ": integral of x dW/dx", moment, -1, def.kernelTolerance));
-    CheckResult slope = check(name + ": slope against differences of W", 0, 1, def.kernelTolerance);
+    const double rim = 4 * kPi / 3 * H * H * H * kernel.w(H * (1 - 1e-12));
+    result.checks.push_back(
+        check(fmt::format("{}: integral of x dW/dx", name), moment, -1 + rim, def.kernelTolerance));
+    CheckResult slope =
+        check(fmt::format("{}: slope, differences of W", name), 0, 1, def.kernelTolerance);
     double steepest = 0, worst = -1;
     for (int k = 1; k < 400; ++k)
       steepest = std::max(steepest, std::abs(kernel.slope(H * k / 400)));
@@ -70,7 +72,7 @@ CaseResult runKernelCase(const CaseDef& def) {
       const double r = H * k / 100, w0 = kernel.w(0);
       curve.points.push_back({k / 100.0, kernel.w(r) / w0, kernel.w(r) / w0});
     }
-    slope.xLabel = "r / H";
+    slope.xLabel = std::string("r / H");
     slope.curves.push_back(curve);
     result.checks.push_back(slope);
   }

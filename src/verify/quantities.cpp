@@ -82,25 +82,22 @@ double surfaceHeight(const Snapshot& s, const QuantityDef& q) {
   if (s.def->motion.kind == MotionKind::piston && d.shape == Shape::box)
     area *= 1 - s.def->motion.speed.travel(s.time_s) / d.size_m[s.def->motion.axis];
   const auto layer = static_cast<std::size_t>(std::lround(area / (s.spacing_m * s.spacing_m)));
-  QuantityDef up = q;
-  up.along = "z";
+  const QuantityDef up{.kind = q.kind, .along = "z", .within_m = q.within_m};
   return farthest(along(s, up, 1), layer, s.spacing_m);
 }
 
 /// Beside a plug of speed U the flow falls as U - u ~ (r - plug)^(1 + 1/n): a straight line through
 /// (U - u)^(n / (n + 1)) of the sheared bins meets zero at the plug's edge.
 double plugHalfWidth(const Snapshot& s) {
-  QuantityDef q;
-  q.kind = "profile";
-  q.of = "velocity-x";
-  q.along = s.def->domain.shape == Shape::tube ? "radius" : "z";
+  const bool tube = s.def->domain.shape == Shape::tube;
+  const QuantityDef q{.kind = "profile", .of = "velocity-x", .along = tube ? "radius" : "z"};
   ProfileSum sum;
   sum.add(q, s, [](const Probe&) { return 0.0; });
   const auto points = sum.points();
   double fastest = 0;
   for (const auto& p : points) fastest = std::max(fastest, std::abs(p.measured));
   const double n = s.def->fluid.index, power = n / (n + 1);
-  const double middle = q.along == "z" ? s.def->domain.size_m.z() / 2 : 0;
+  const double middle = tube ? 0 : s.def->domain.size_m.z() / 2;
   double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const auto& p : points) {
     const double lost = 1 - std::abs(p.measured) / std::max(fastest, 1e-300);

@@ -60,11 +60,11 @@ ReferenceDef readReference(const JsonNode& node) {
   return r;
 }
 
-ErrorKind errorKind(const std::string& word) {
-  if (word == "rms") return ErrorKind::rms;
-  if (word == "mean") return ErrorKind::mean;
-  if (word == "each") return ErrorKind::each;
-  return word == "absolute" ? ErrorKind::absolute : ErrorKind::max;
+ErrorRule errorRule(const std::string& word) {
+  if (word == "rms") return ErrorRule::rms;
+  if (word == "mean") return ErrorRule::mean;
+  if (word == "each") return ErrorRule::each;
+  return word == "absolute" ? ErrorRule::absolute : ErrorRule::max;
 }
 }  // namespace
 
@@ -75,7 +75,7 @@ std::vector<CheckDef> readChecks(const JsonNode& root) {
     c.quantity = readQuantity(node.object("quantity"));
     c.reference = readReference(node.object("reference"));
     c.tolerance = node.number("tolerance", 1e-15, 1e6);
-    c.error = errorKind(node.choice("error", {"max", "rms", "mean", "each", "absolute"}, "max"));
+    c.error = errorRule(node.choice("error", {"max", "rms", "mean", "each", "absolute"}, "max"));
     c.from_s = node.number("from_s", 0, 1e4, 0);
     if (node.has("align")) c.align = node.number("align", -1e12, 1e12);
     if (c.align && c.quantity.kind == "profile")

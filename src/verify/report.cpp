@@ -29,7 +29,8 @@ std::string quoted(const std::string& text) {
     else
       out += c;
   }
-  return out + "\"";
+  out += '"';
+  return out;
 }
 std::string jsonNumber(double x) {
   return std::isfinite(x) ? fmt::format("{:.9g}", x) : "null";
@@ -84,7 +85,8 @@ std::string tableRows(const CaseResult& result) {
 }
 
 std::string resultsJson(const std::vector<CaseResult>& results) {
-  std::string out = "{\n  \"version\": " + quoted(SWALLOWCLIP_VERSION) + ",\n  \"cases\": [";
+  std::string out =
+      fmt::format("{{\n  \"version\": {},\n  \"cases\": [", quoted(SWALLOWCLIP_VERSION));
   bool firstCase = true;
   for (const CaseResult& r : results) {
     out += fmt::format(
@@ -109,7 +111,8 @@ std::string resultsJson(const std::vector<CaseResult>& results) {
     }
     out += "]}";
   }
-  return out + "\n  ]\n}\n";
+  out += "\n  ]\n}\n";
+  return out;
 }
 
 Result<void> writeCharts(const CaseResult& result, const std::filesystem::path& folder) {
@@ -119,8 +122,8 @@ Result<void> writeCharts(const CaseResult& result, const std::filesystem::path& 
     ++count;
     const std::string stem = count == 1 ? result.name : fmt::format("{}-{}", result.name, count);
     const plot::Chart chart = chartOf(result, check);
-    if (auto ok = plot::writeSvg(chart, folder / (stem + ".svg")); !ok) return ok;
-    if (auto ok = plot::writePng(chart, folder / (stem + ".png")); !ok) return ok;
+    if (auto ok = plot::writeSvg(chart, folder / fmt::format("{}.svg", stem)); !ok) return ok;
+    if (auto ok = plot::writePng(chart, folder / fmt::format("{}.png", stem)); !ok) return ok;
   }
   return {};
 }

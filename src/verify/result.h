@@ -17,14 +17,14 @@ struct Curve {
 };
 
 struct CheckResult {
-  std::string title, unit, xLabel;
+  std::string title, unit, xLabel = {};
   bool series = false;
   double measured = 0, reference = 0;  ///< where they differ most
   double error = 0, tolerance = 0;     ///< shares; absolute ones in the unit itself
   bool absolute = false, pass = false;
-  std::optional<double> order;  ///< of convergence, when refined
+  std::optional<double> order = {};  ///< of convergence, when refined
   double coarseError = 0;
-  std::vector<Curve> curves;
+  std::vector<Curve> curves = {};
 };
 
 struct CaseResult {

@@ -1,1 +1,140 @@
 // SPDX-License-Identifier: MIT
+// Every formula against a property that does not come from the formula: its differential equation,
+// its limits, or a quadrature.
+#include "verify/analytic.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/vec.h"
+
+using namespace swallowclip;
+using namespace swallowclip::verify;
+
+namespace {
+constexpr double kL = 0.016, kNu = 1e-3, kForce = 1.5, kWall = 0.05;
+
+bolus::Fluid herschelBulkley() {
+  bolus::Fluid f;
+  f.model = bolus::RheologyModel::herschelBulkley;
+  f.yield_Pa = 3;
+  f.consistency_Pasn = 1.7;
+  f.index = 0.4;
+  return f;
+}
+
+/// d2u/dy2 and du/dt by central differences.
+template <class U>
+void expectDiffusion(U u, double y, double t, double force, bool round) {
+  const double dy = 2e-5, dt = 1e-5;
+  double bend = (u(y + dy, t) - 2 * u(y, t) + u(y - dy, t)) / (dy * dy);
+  if (round) bend += (u(y + dy, t) - u(y - dy, t)) / (2 * dy) / y;
+  const double rate = (u(y, t + dt) - u(y, t - dt)) / (2 * dt);
+  EXPECT_NEAR(rate, kNu * bend + force, 2e-3 * (std::abs(kNu * bend) + std::abs(force) + 1e-3));
+}
+}  // namespace
+
+TEST(Analytic, CouetteStartsAtRestEndsStraightAndDiffuses) {
+  EXPECT_NEAR(couetteStart_ms(kL / 2, 1e-4, kL, kWall, kNu), 0, 1e-9);
+  for (double y : {0.0, 0.3 * kL, kL})
+    EXPECT_NEAR(couetteStart_ms(y, 10, kL, kWall, kNu), kWall * y / kL, 1e-15);
+  EXPECT_NEAR(couetteStart_ms(kL, 0.01, kL, kWall, kNu), kWall, 1e-12);
+  for (double t : {0.01, 0.05})
+    expectDiffusion([](double y, double s) { return couetteStart_ms(y, s, kL, kWall, kNu); },
+                    0.7 * kL, t, 0, false);
+}
+
+TEST(Analytic, PlanePoiseuilleStartsWithItsForceAndDiffuses) {
+  EXPECT_NEAR(planePoiseuilleStart_ms(kL / 2, 1e-3, kL, kForce, kNu), kForce * 1e-3, 1e-9);
+  EXPECT_NEAR(planePoiseuilleStart_ms(kL / 2, 10, kL, kForce, kNu), kForce * kL * kL / (8 * kNu),
+              1e-15);
+  EXPECT_NEAR(planePoiseuilleStart_ms(0, 0.02, kL, kForce, kNu), 0, 1e-15);
+  expectDiffusion([](double y, double s) { return planePoiseuilleStart_ms(y, s, kL, kForce, kNu); },
+                  0.2 * kL, 0.03, kForce, false);
+}
+
+TEST(Analytic, PipePoiseuilleStartsWithItsForceAndDiffuses) {
+  const double R = kL / 2;
+  EXPECT_NEAR(pipePoiseuilleStart_ms(0, 1e-3, R, kForce, kNu), kForce * 1e-3, 1e-8);
+  EXPECT_NEAR(pipePoiseuilleStart_ms(0, 10, R, kForce, kNu), kForce * R * R / (4 * kNu), 1e-15);
+  EXPECT_NEAR(pipePoiseuilleStart_ms(R, 0.02, R, kForce, kNu), 0, 1e-9);
+  expectDiffusion([&](double y, double s) { return pipePoiseuilleStart_ms(y, s, R, kForce, kNu); },
+                  0.4 * R, 0.01, kForce, true);
+}
+
+TEST(Analytic, SteadyFlowBearsItsStressEverywhere) {
+  bolus::Fluid newtonian, carreau;
+  newtonian.viscosity_Pas = 0.7;
+  carreau.model = bolus::RheologyModel::carreau;
+  carreau.eta0_Pas = 12;
+  carreau.index = 0.4;
+  const double H = 0.008, wall = 20;
+  for (const bolus::Fluid& f : {newtonian, herschelBulkley(), carreau})
+    for (double share : {0.05, 0.3, 0.6, 0.9}) {
+      const double d = 1e-3 * H, y = share * H;
+      const double rate =
+          (steadyFlow_ms(f, y - d, H, wall) - steadyFlow_ms(f, y + d, H, wall)) / (2 * d);
+      const double stress = wall * share;
+      EXPECT_NEAR(rate, shearRateAt_s(f, stress), 2e-3 * shearRateAt_s(f, wall));
+      if (f.model == bolus::RheologyModel::herschelBulkley && stress <= f.yield_Pa) {
+        EXPECT_EQ(rate, 0);
+        continue;
+      }
+      EXPECT_NEAR(bolus::apparentViscosity_Pas(f, rate) * rate, stress, 0.01 * stress);
+    }
+  EXPECT_EQ(steadyFlow_ms(herschelBulkley(), 0, H, 2.9), 0) << "below its yield nothing moves";
+  EXPECT_NEAR(steadyFlow_ms(newtonian, 0, H, wall), wall * H / (2 * 0.7), 1e-12);
+}
+
+// Lubrication theory integrated numerically: the wave-frame flow q at which the pressure rise of
+// one wave vanishes, and from it the time-mean flow in the frame of the walls.
+TEST(Analytic, PeristalticFlowMatchesQuadrature) {
+  for (double phi : {0.1, 0.4, 0.6, 0.9}) {
+    double h2 = 0, h3 = 0, h4 = 0, area = 0;
+    const int n = 20000;
+    for (int k = 0; k < n; ++k) {
+      const double h = 1 + phi * std::sin(2 * kPi * (k + 0.5) / n);
+      h2 += 1 / (h * h) / n;
+      h3 += 1 / (h * h * h) / n;
+      h4 += 1 / (h * h * h * h) / n;
+      area += h * h / n;
+    }
+    EXPECT_NEAR(shapiroPlane(phi), 1 - h2 / h3, 1e-9);
+    EXPECT_NEAR(shapiroTube(phi), area - h2 / h4, 1e-9);
+  }
+  EXPECT_EQ(shapiroPlane(0), 0);
+  EXPECT_NEAR(shapiroPlane(1), 1, 1e-15) << "a wave that shuts carries all that is before it";
+  EXPECT_NEAR(shapiroTube(1), 1.5, 1e-15);
+}
+
+// The profiles of Huppert's similarity solutions hold the volume that they started with.
+TEST(Analytic, GravityCurrentHoldsItsVolume) {
+  const double g = 9.81, nu = 1e-3, t = 2;
+  const double area = 8e-5, x1 = huppertPlane_m(area, t, g, nu);
+  // h^3 = (3 nu / 10 g t) (x1^2 - x^2) * 3 ... from h_t = (g / 3 nu) (h^3 h_x)_x
+  double sum = 0;
+  const int n = 20000;
+  for (int k = 0; k < n; ++k) {
+    const double x = x1 * (k + 0.5) / n;
+    sum += std::cbrt(9 * nu / (10 * g * t) * (x1 * x1 - x * x)) * x1 / n;
+  }
+  EXPECT_NEAR(sum, area, 2e-3 * area);
+  const double volume = 5e-6, r1 = huppertRound_m(volume, t, g, nu);
+  sum = 0;
+  for (int k = 0; k < n; ++k) {
+    const double r = r1 * (k + 0.5) / n;
+    sum += 2 * kPi * r * std::cbrt(9 * nu / (16 * g * t) * (r1 * r1 - r * r)) * r1 / n;
+  }
+  EXPECT_NEAR(sum, volume, 5e-3 * volume);
+}
+
+TEST(Analytic, CapAngleIsFoundFromItsCentreOfMass) {
+  const double volume = 4e-8;
+  for (double deg : {20.0, 60.0, 90.0, 140.0}) {
+    const double angle = deg * kPi / 180;
+    EXPECT_NEAR(capAngle_rad(volume, capCentre_m(volume, angle)), angle, 1e-9);
+  }
+  const double R = std::cbrt(3 * volume / (2 * kPi));  // half a ball: 3/8 of its radius
+  EXPECT_NEAR(capCentre_m(volume, kPi / 2), 3 * R / 8, 1e-12);
+}
