@@ -108,7 +108,7 @@ struct CaseDef {
   std::vector<FillDef> fill;
   StartKind start = StartKind::rest;
   double startRate = 0;  ///< rad/s of a rotation, m/s of Taylor-Green
-  bool relax = false;
+  double relax_s = 0;    ///< at most; the fluid comes to rest between the walls of time 0 first
   double duration_s = 0;
   std::vector<double> samples_s;
   double average_s = 0;  ///< every sample is the mean over this long before it
@@ -119,4 +119,6 @@ struct CaseDef {
 /// Reads one case and proves that it can be run: form, geometry, fluid inside its walls.
 Result<CaseDef> loadCase(const std::filesystem::path& path);
 Result<CaseDef> parseCase(std::string text, const std::string& name);
+/// The part of that proof that depends on spacings.
+Result<void> checkGeometry(const CaseDef& def);
 }  // namespace swallowclip::verify

@@ -18,7 +18,7 @@ constexpr double kMm = 1e-3;
 // Millimetres to decimetres: above lies what a solver for mouthfuls was not made for.
 constexpr double kLargest_mm = 1000, kSmallest_mm = 0.01;
 constexpr double kFastest_mms = 1e5;
-constexpr std::size_t kMostSamples = 1000;
+constexpr std::size_t kMostSamples = 1000, kMostRefinements = 5;
 
 Vec3 sizes(const JsonNode& node, const char* key) {
   const Vec3 v = node.vec3(key);
@@ -205,30 +205,11 @@ void readSpacings(const JsonNode& root, CaseDef& def) {
       root.fail("\"refine_mm\" must fall towards spacing_mm, 10 mm at most",
                 "Give the coarser spacings, the coarsest first.");
     def.refine_m.push_back(mm * kMm);
+    if (def.refine_m.size() > kMostRefinements) {
+      root.fail("\"refine_mm\" has too many spacings", "Give five at most.");
+      return;
+    }
   }
-}
-
-/// What can only be judged with the walls built and the fluid in place.
-void checkGeometry(const JsonNode& root, const CaseDef& def) {
-  std::vector<double> spacings = def.refine_m;
-  spacings.push_back(def.spacing_m);
-  for (double spacing_m : spacings) {
-    auto domain = Domain::build(def, spacing_m);
-    if (!domain)
-      return root.fail(fmt::format("{}: {}", domain.error().place, domain.error().problem),
-                       domain.error().remedy);
-    if (const double least = domain->narrowest_m(); spacing_m > least)
-      return root.member("spacing_mm")
-          .fail(fmt::format("spacing of {:.3g} mm in a domain {:.3g} mm wide", spacing_m / kMm,
-                            least / kMm),
-                "Use a spacing of a tenth of the width or less.");
-    if (auto start = fillDomain(def, *domain, spacing_m); !start)
-      return root.fail(start.error().problem, start.error().remedy);
-  }
-  for (const CheckDef& check : def.checks)
-    if (auto made = makeReference(def, check.reference); !made)
-      return root.fail(fmt::format("{} ({})", made.error().problem, made.error().place),
-                       made.error().remedy);
 }
 
 Result<CaseDef> read(const JsonFile& file, const std::filesystem::path& path) {
@@ -268,15 +249,46 @@ Result<CaseDef> read(const JsonFile& file, const std::filesystem::path& path) {
                    .value_or(def.solver);
   def.fill = readFill(root);
   readStart(root, def);
-  def.relax = root.boolean("relax", false);
+  def.relax_s = root.number("relax_s", 0, 10, 0);
   readTimes(root, def);
   def.checks = readChecks(root);
   if (auto done = file.finish(); !done) return std::unexpected(done.error());
-  checkGeometry(root, def);
-  if (auto done = file.finish(); !done) return std::unexpected(done.error());
+  // Errors without a place of their own are those of the file as a whole.
+  auto good = checkGeometry(def);
+  if (!good && good.error().place.empty()) good.error().place = root.place();
+  if (!good) return std::unexpected(good.error());
   return def;
 }
 }  // namespace
+
+Result<void> checkGeometry(const CaseDef& def) {
+  if (def.kernelsOnly) return {};
+  std::vector<double> spacings = def.refine_m;
+  spacings.push_back(def.spacing_m);
+  for (double spacing_m : spacings) {
+    const auto domain = Domain::build(def, spacing_m);
+    if (!domain) return std::unexpected(domain.error());
+    if (const double least = domain->narrowest_m(); spacing_m > least)
+      return usageError("",
+                        fmt::format("spacing of {:.3g} mm in a domain {:.3g} mm wide",
+                                    spacing_m / kMm, least / kMm),
+                        "Use a spacing of a tenth of the width or less.");
+    const double reach_m = 2 * bolus::supportPerSpacing(def.kernel) * spacing_m;
+    for (int k = 0; k < 3; ++k)
+      if (const double period_m = domain->period_m()[k]; period_m > 0 && period_m <= reach_m)
+        return usageError("",
+                          fmt::format("a period of {:.3g} mm, with particles that feel each other "
+                                      "over {:.3g} mm on either side",
+                                      period_m / kMm, reach_m / 2 / kMm),
+                          fmt::format("Make it longer than {:.3g} mm.", reach_m / kMm));
+    if (const auto start = fillDomain(def, *domain, spacing_m); !start)
+      return std::unexpected(start.error());
+  }
+  for (const CheckDef& check : def.checks)
+    if (const auto made = makeReference(def, check.reference); !made)
+      return std::unexpected(made.error());
+  return {};
+}
 
 Result<CaseDef> loadCase(const std::filesystem::path& path) {
   auto file = JsonFile::load(path);

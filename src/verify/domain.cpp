@@ -13,7 +13,8 @@ namespace {
 // Walls of a periodic axis go on for this many spacings beyond both ends: more than the widest
 // kernel support (2.5) and one step.
 constexpr double kBeyond = 4;
-constexpr double kAlmost = 1e-9;  // m; vertices this near a face belong to it
+constexpr double kMostTriangles = 1e6;  // of walls; a swallow has some 20 000
+constexpr double kAlmost = 1e-9;        // m; vertices this near a face belong to it
 
 using Moving = std::function<void(double, std::vector<Vec3>&, std::vector<Vec3>&)>;
 
@@ -132,7 +133,17 @@ Result<Domain> Domain::build(const CaseDef& def, double spacing_m) {
   const double beyond = kBeyond * spacing_m;
   d.turn_ = Eigen::AngleAxisd(shape.tilt_rad, Vec3::UnitY()).toRotationMatrix();
   TriMesh mesh;
-  double share = 1;  // of the mesh that is one period
+  // Two triangles per square of the walls, with room for what goes on beyond periods.
+  const Vec3 sides = shape.shape == Shape::box ? Vec3(shape.size_m.array() + 2 * beyond)
+                                               : Vec3(2 * shape.radius_m, 2 * shape.radius_m,
+                                                      shape.length_m + 2 * beyond);
+  const double area = 2 * (sides.x() * sides.y() + sides.y() * sides.z() + sides.z() * sides.x());
+  if (shape.shape != Shape::mesh && shape.shape != Shape::none &&
+      2 * area / (edge * edge) > kMostTriangles)
+    return usageError("",
+                      fmt::format("walls of {:.2g} triangles, at most {:.2g} are made",
+                                  2 * area / (edge * edge), kMostTriangles),
+                      "Use a wider spacing or edge_mm, or a smaller domain.");
   if (shape.shape == Shape::box) {
     d.high_m_ = shape.size_m;
     Vec3 low = Vec3::Zero(), high = shape.size_m;
@@ -141,7 +152,6 @@ Result<Domain> Domain::build(const CaseDef& def, double spacing_m) {
       d.period_m_[k] = shape.size_m[k];
       low[k] -= beyond;
       high[k] += beyond;
-      share *= shape.size_m[k] / (high[k] - low[k]);
     }
     d.volume_m3_ = shape.size_m.prod();
     if (def.motion.kind == MotionKind::peristalsis) {

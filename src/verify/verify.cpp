@@ -46,6 +46,10 @@ Result<std::vector<CaseDef>> loadCases(const pipeline::RunOptions& options) {
     if (options.verify.spacing_mm > 0) {
       def->spacing_m = options.verify.spacing_mm * 1e-3;
       std::erase_if(def->refine_m, [&](double x) { return x <= def->spacing_m; });
+      if (auto good = checkGeometry(*def); !good) {
+        if (good.error().place.empty()) good.error().place = file.string();
+        return std::unexpected(good.error());
+      }
     }
     if (!names.insert(def->name).second)
       return usageError(file.string(), fmt::format("a second case is named \"{}\"", def->name),

@@ -9,6 +9,8 @@
 #include "scratch.h"
 #include "verify/case.h"
 #include "verify/cases.h"
+#include "verify/quantities.h"
+#include "verify/references.h"
 
 using namespace swallowclip;
 using namespace swallowclip::verify;
@@ -59,6 +61,7 @@ TEST(CaseFile, RefusesWhatCannotBeRun) {
   expectRefused(spoilt("\"radius_mm\": 5", "\"radius_mm\": 0.1"), "particle");
   expectRefused(spoilt("{\"kind\": \"sphere\", \"centre_mm\": [10, 10, 30], \"radius_mm\": 5}", ""),
                 "fill");
+  expectRefused(spoilt("[20, 20, 40]}", "[3, 20, 40], \"periodic\": \"x\"}"), "a period of 3 mm");
   expectRefused(kGoodCase.substr(0, kGoodCase.size() / 2), "");
 }
 
@@ -87,6 +90,47 @@ TEST(CaseFile, RefusesMeshesThatAreMissingOrLeak) {
   ASSERT_TRUE(writeFile(folder.path() / "walls.obj", vertices + faces + "f 4 5 8\n"));
   const auto closed = loadCase(file);
   EXPECT_TRUE(closed) << closed.error().text();
+}
+
+// Bytes of good files changed, dropped and doubled: read or refused, never a crash or a hang.
+TEST(CaseFile, BearsRandomDamage) {
+  std::uint64_t seed = 1;
+  const auto next = [&](std::uint64_t below) {  // Knuth's MMIX generator
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (seed >> 33) % below;
+  };
+  int refused = 0;
+  for (int round = 0; round < 400; ++round) {
+    std::string text = kGoodCase;
+    for (std::uint64_t k = 0; k <= next(3); ++k) {
+      const std::size_t at = next(text.size());
+      switch (next(4)) {
+        case 0:
+          text[at] = static_cast<char>(next(256));
+          break;
+        case 1:
+          text.erase(at, 1 + next(20));
+          break;
+        case 2:
+          text.insert(at, text.substr(at, 1 + next(20)));
+          break;
+        default:
+          text[at] = "0123456789-.eE[]{},:\""[next(21)];
+      }
+    }
+    const auto def = parseCase(text, "damaged.json");
+    refused += !def;
+    if (!def) EXPECT_FALSE(def.error().text().empty());
+  }
+  EXPECT_GT(refused, 200);
+}
+
+TEST(CaseFile, EveryWordIsDocumented) {
+  const std::string page =
+      readFile(std::filesystem::path(SWALLOWCLIP_SOURCE_DIR) / "docs" / "verify.md").value();
+  for (const auto& words : {referenceNames(), quantityNames(), fieldNames(), coordinateNames()})
+    for (const std::string& word : words)
+      EXPECT_NE(page.find("`" + word + "`"), std::string::npos) << word;
 }
 
 TEST(CaseFile, AllShippedCasesAreGood) {

@@ -41,7 +41,7 @@ void expectClosedAndTrueToItsVelocity(const CaseDef& def) {
       const Vec3 moved = (4 * later[k] - 3 * x[k] - earlier[k]) / (2 * dt);
       // side walls of a piston get shorter without sliding
       if (def.motion.kind == MotionKind::piston || def.motion.kind == MotionKind::close) {
-        if (v[k].norm() > 0) EXPECT_NEAR((moved - v[k]).norm(), 0, 1e-6);
+        EXPECT_TRUE(v[k].norm() == 0 || (moved - v[k]).norm() < 1e-6);
       } else {
         EXPECT_NEAR((moved - v[k]).norm(), 0, 1e-5);
       }
