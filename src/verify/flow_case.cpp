@@ -96,8 +96,9 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
       ++times;
       for (std::size_t c = 0; c < def.checks.size(); ++c) {
         const CheckDef& check = def.checks[c];
-        if (sample < check.from_s) continue;
-        if (check.quantity.kind == "profile")
+        const bool profile = check.quantity.kind == "profile";
+        if (profile && sample < check.from_s) continue;
+        if (profile)
           profiles[c].add(check.quantity, s, references[c]);
         else
           sums[c] += measureSeries(check.quantity, s);
@@ -109,9 +110,9 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
                      "Report it: fluid never leaves closed walls.");
     for (std::size_t c = 0; c < def.checks.size(); ++c) {
       const CheckDef& check = def.checks[c];
-      if (sample < check.from_s || times == 0) continue;
+      if (times == 0) continue;
       if (check.quantity.kind == "profile") {
-        run.curves[c].push_back({sample, profiles[c].points()});
+        if (sample >= check.from_s) run.curves[c].push_back({sample, profiles[c].points()});
       } else {
         const double t = sample - def.average_s * (count - 1) / (2.0 * count);
         run.curves[c][0].points.push_back({t, sums[c] / times, 0});
@@ -133,15 +134,21 @@ double timeOf(const std::vector<ProfileSum::Point>& points, double value) {
   return NAN;
 }
 double timeOf(const Reference& reference, double value, double longest) {
+  double start = longest / 1e7;  // a moment at which the reference says something
+  while (start < longest && !std::isfinite(reference({Vec3::Zero(), start, start}))) start *= 1.05;
   double low = 0, high = longest;
   for (int k = 0; k < 100; ++k) {
     const double t = (low + high) / 2;
-    (reference({Vec3::Zero(), t, t}) < value ? low : high) = t;
+    const double at = reference({Vec3::Zero(), t, t});
+    // before its first point a table counts as below the value, beyond its last as above
+    const bool below = std::isfinite(at) ? at < value : t < start;
+    (below ? low : high) = t;
   }
   return (low + high) / 2;
 }
 
-/// Fills the reference of a series; with `align`, shifted in time. False when it cannot be.
+/// Fills the reference of a series; with `align`, shifted in time. False when it cannot be. What
+/// lies before `from_s` serves the shift only.
 bool referToSeries(const CheckDef& check, const Reference& reference, Curve& curve) {
   double shift = 0;
   if (check.align) {
@@ -153,6 +160,9 @@ bool referToSeries(const CheckDef& check, const Reference& reference, Curve& cur
     const double t = p.along + shift;
     p.reference = reference({Vec3::Zero(), t, t});
   }
+  std::erase_if(curve.points, [&](const auto& p) {
+    return p.along < check.from_s || !std::isfinite(p.reference);
+  });
   return true;
 }
 

@@ -252,13 +252,14 @@ void ProfileSum::add(const QuantityDef& q, const Snapshot& s, const Reference& r
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     const Vec3& p = s.positions[i];
     if (!within(q, p)) continue;
-    const double at = coordinate(q, s, p);
+    const double at = coordinate(q, s, p), wanted = reference({p, at, s.time_s});
+    if (!std::isfinite(wanted)) continue;
     const auto k = static_cast<std::size_t>(
         std::clamp((at - low_) / width_, 0.0, static_cast<double>(count_.size()) - 0.5));
     ++count_[k];
     along_[k] += at;
     measured_[k] += field(q, s, i);
-    reference_[k] += reference({p, at, s.time_s});
+    reference_[k] += wanted;
   }
 }
 

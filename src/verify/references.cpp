@@ -312,14 +312,15 @@ const std::vector<Row>& rows() {
   return table;
 }
 
+/// Not a number beyond the ends of the table: nothing is known there.
 double readTable(const std::vector<std::pair<double, double>>& points, double x) {
-  if (x <= points.front().first) return points.front().second;
+  if (x < points.front().first) return NAN;
   for (std::size_t k = 1; k < points.size(); ++k) {
     const auto [x0, y0] = points[k - 1];
     const auto [x1, y1] = points[k];
     if (x <= x1) return y0 + (y1 - y0) * (x - x0) / (x1 - x0);
   }
-  return points.back().second;
+  return NAN;
 }
 
 const Row* findRow(const std::string& name) {

@@ -16,6 +16,7 @@ struct Probe {
   double along = 0;        ///< the profile's coordinate, m (tables are read at it)
   double time_s = 0;
 };
+/// Not a number where the reference says nothing.
 using Reference = std::function<double(const Probe&)>;
 
 std::vector<std::string> referenceNames();
