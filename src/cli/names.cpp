@@ -78,7 +78,10 @@ Result<void> checkNames(CommandBit command, const RunOptions& options) {
     if (auto found = checkReadable("--map", options.map, false); !found) return found;
   }
   for (const fs::path& file : options.files)
-    if (auto found = checkReadable("check", file, true); !found) return found;
+    if (auto found =
+            checkReadable(command == kVerify ? "verify" : "check", file, command != kVerify);
+        !found)
+      return found;
   return {};
 }
 }  // namespace swallowclip::cli

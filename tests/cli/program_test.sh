@@ -35,11 +35,21 @@ expect 2 err 'Did you mean "nectar"?' render --component 4 --score 1 --bolus nec
 expect 2 err 'Did you mean "lateral"?' render --component 4 --score 1 --views latral
 expect 2 err 'Its scores are 0 to 2.' render --component 10 --score 4
 expect 2 err 'no such file' measure "$folder/none.h5"
+expect 2 err 'no such file' verify "$folder/none.json"
+expect 2 err 'Did you mean "short"?' verify --subset shrt
 expect 0 out 'thesis-honey' list boluses
 expect 0 out 'oblique' list views
 
 printf '{"name": "x", "views": {}, "fsp": 30}' >"$folder/preset.json"
 expect 2 err 'preset.json:1:' check "$folder/preset.json"
+
+printf '{"name": "k", "type": "kernels", "tolerance": 1e-4}' >"$folder/k.json"
+expect 0 out '1 of 1 cases passed' verify "$folder/k.json" --out "$folder/verify"
+printf '{"name": "k", "type": "kernels", "tolerance": 1e-12}' >"$folder/k.json"
+expect 1 out 'FAIL' verify "$folder/k.json" --out "$folder/verify"
+expect 2 err 'from 0.2 to 10' verify "$folder/k.json" --spacing-mm 99
+printf '{"name": "k", "type": "kernels", "tolerance": -1}' >"$folder/k.json"
+expect 2 err 'k.json:1:' verify "$folder/k.json" --out "$folder/verify"
 
 # A result that cannot be written is a failure, not a success.
 if [ -w /dev/full ]; then

@@ -57,6 +57,31 @@ TEST(RunCase, ATableIsReadAtItsTimes) {
   EXPECT_TRUE(result->pass) << tableRows(*result);
 }
 
+// A reference whose clock started 5 ms later: right only after both are set to pass 0.15 m/s.
+TEST(RunCase, SeriesAreAlignedWhenAsked) {
+  std::string text = spoilt(R"({"kind": "free-fall-speed"})",
+                            R"({"kind": "table", "points": [[0.005, 0], [0.105, 0.981]]})");
+  text.replace(text.find("-9.81"), 5, "9.81");
+  for (const bool aligned : {false, true}) {
+    if (aligned) text.replace(text.find("\"tolerance\""), 0, "\"align\": 0.15, ");
+    const auto def = parseCase(text, "case.json");
+    ASSERT_TRUE(def) << def.error().text();
+    const auto result = runCase(*def);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->pass, aligned) << tableRows(*result);
+  }
+}
+
+TEST(RunCase, RefinementGivesAnOrder) {
+  const auto def = parseCase(spoilt("\"spacing_mm\": 2", "\"spacing_mm\": 2, \"refine_mm\": [2.5]"),
+                             "case.json");
+  ASSERT_TRUE(def) << def.error().text();
+  const auto result = runCase(*def);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->pass) << "an exact answer need not get better: " << tableRows(*result);
+  EXPECT_TRUE(result->checks.at(0).order.has_value());
+}
+
 TEST(RunCase, KernelsIntegrateToOne) {
   const auto def = parseCase(R"({"name": "k", "type": "kernels", "tolerance": 1e-4})", "k.json");
   ASSERT_TRUE(def) << def.error().text();
