@@ -8,7 +8,7 @@ namespace swallowclip::bolus {
 namespace {
 // Step along the gradient over the diagonal, at most one over the largest eigenvalue of the scaled
 // operator. Ihmsen et al. 2014, sec. 3.2 have 0.5 for Jacobi.
-constexpr float kRelaxation = 0.4f;
+constexpr float kRelaxation = 0.25f;
 // Share of the particle's own pressure that a wall gives back. 1 is adjoint to the density rate and
 // comes to rest, but under pressure it leans on the contacts; 2 (k_wall = k_i) balances uniform
 // pressure but keeps thin fluids circling. Measured on a 35 mm column, 1 / 1.25 / 1.5 / 2: mean

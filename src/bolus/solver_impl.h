@@ -45,7 +45,7 @@ struct Solver::Impl {
   void updatePath(bool all);
   void sampleWalls();
   int clampSpeeds(double dt_s);
-  void measure(Substep& s) const;
+  void measure(Substep& s);
   std::string wallsAt(int particle) const;
 
   BolusDef def;
@@ -76,6 +76,7 @@ struct Solver::Impl {
   double time_s = 0;
   bool frozen = false;  // walls stand still (settling)
   double settlingViscosity_Pas = 0;
+  double stepShare = 1;     // of the step that speeds allow, less while steps leave compression
   double infeasible_s = 0;  // how long the pocket has been too small
   Stats stats;
   double errorSum = 0, errorCount = 0, aboveTenCount = 0;

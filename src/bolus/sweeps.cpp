@@ -62,14 +62,12 @@ SC_CLONES double viscosity(const ViscositySweep& s, int begin, int end) {
     F8 ox = all(0), oy = all(0), oz = all(0);
     for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
       const int* at = s.pairs.index + e;
-      const F8 gx = load(s.pairs.gx + e), gy = load(s.pairs.gy + e), gz = load(s.pairs.gz + e);
-      const F8 along = load(s.c + e) * ((x - gather(s.vx, at)) * gx + (y - gather(s.vy, at)) * gy +
-                                        (z - gather(s.vz, at)) * gz);
-      ox += along * gx;
-      oy += along * gy;
-      oz += along * gz;
+      const F8 c = load(s.c + e);
+      ox += c * (x - gather(s.vx, at));
+      oy += c * (y - gather(s.vy, at));
+      oz += c * (z - gather(s.vz, at));
     }
-    const float own = 1 + s.wall[i];
+    const float own = s.own[i];
     s.outX[i] = own * s.vx[i] + sum(ox);
     s.outY[i] = own * s.vy[i] + sum(oy);
     s.outZ[i] = own * s.vz[i] + sum(oz);

@@ -45,10 +45,10 @@ struct StepSweep {
   Sums run(int begin, int end) const;
 };
 
-/// out_i = (1 + wall_i) v_i + sum c_ij ((v_i - v_j).g_ij) g_ij; returns sum v.out.
+/// out_i = own_i v_i + sum c_ij (v_i - v_j); returns sum v.out.
 struct ViscositySweep {
   PairLists pairs;
-  const float *c, *wall, *vx, *vy, *vz;
+  const float *c, *own, *vx, *vy, *vz;
   float *outX, *outY, *outZ;
   double run(int begin, int end) const;
 };

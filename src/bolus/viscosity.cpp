@@ -2,12 +2,10 @@
 #include "bolus/viscosity.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace swallowclip::bolus {
 namespace {
-constexpr double kPairFactor = 10;   // 2 (d + 2), d = 3 (Monaghan 2005)
 constexpr double kWallFactor = 2;    // Ferrand et al. 2013, eq. 38: 2 nu |grad gamma| u / distance
 constexpr double kSoftening = 0.01;  // eta^2 / (H/2)^2 against division by zero (Monaghan 2005)
 constexpr int kCap = 300;            // iterations, assumed (100 to 500)
@@ -31,8 +29,6 @@ double shearRate_s(const Flow& f, const std::vector<Vec3>& v, int i) {
   return std::sqrt(2 * d.squaredNorm());
 }
 
-// c_ij (v_ij . g) g with g = V gradW stands for the pair term: V gradW = -V slope x, slope = -W'/r,
-// so that  dt 10 nu V slope / (r^2 + eta^2) (v.x) x = dt 10 nu / (V slope (r^2 + eta^2)) (v.g) g.
 void Viscosity::assemble(const Flow& f, double density, double dt, double support) {
   const Neighbours& nb = f.neighbours;
   const double eta2 = kSoftening * support * support / 4;
@@ -45,76 +41,69 @@ void Viscosity::assemble(const Flow& f, double density, double dt, double suppor
       const WallSample& w = f.walls[p];
       const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
       wallDrag_[p] = dt * viscosity_[i] / density * std::max(kWallFactor * w.friction, slit);
-      wall_[i] = static_cast<float>(wallDrag_[p]);
-      Eigen::Matrix3f diagonal = Eigen::Matrix3f::Identity() * (1 + wall_[i]);
+      double diagonal = 1 + wallDrag_[p];
       for (int k = nb.start[i]; k < nb.start[i + 1] && nb.index[k] < nb.count; ++k) {
-        const Vec3f g(nb.gx[k], nb.gy[k], nb.gz[k]);
-        const double g2 = g.squaredNorm();
-        if (g2 <= 0) continue;
-        const double r2 = static_cast<double>(nb.r[k]) * nb.r[k];
+        const double g = std::sqrt(static_cast<double>(nb.gx[k]) * nb.gx[k] +
+                                   static_cast<double>(nb.gy[k]) * nb.gy[k] +
+                                   static_cast<double>(nb.gz[k]) * nb.gz[k]);
+        const double r = nb.r[k];
         // harmonic mean: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
         const double mu =
             2 * viscosity_[i] * viscosity_[nb.index[k]] / (viscosity_[i] + viscosity_[nb.index[k]]);
-        // |g| = V slope r
-        pair_[k] =
-            static_cast<float>(dt * kPairFactor * mu / density * std::sqrt(r2 / g2) / (r2 + eta2));
-        diagonal += pair_[k] * g * g.transpose();
+        pair_[k] = static_cast<float>(2 * dt * mu / density * g * r / (r * r + eta2));
+        diagonal += pair_[k];
       }
-      const Eigen::Matrix3f inverse = diagonal.inverse();
-      inverse_[i] = {inverse(0, 0), inverse(0, 1), inverse(0, 2),
-                     inverse(1, 1), inverse(1, 2), inverse(2, 2)};
+      own_[i] = static_cast<float>(1 + wallDrag_[p]);
+      inverse_[i] = static_cast<float>(1 / diagonal);
     }
   });
 }
 
-void Viscosity::precondition(int i) {
-  const std::array<float, 6>& m = inverse_[i];
-  const float x = residual_.x[i], y = residual_.y[i], z = residual_.z[i];
-  z_.x[i] = m[0] * x + m[1] * y + m[2] * z;
-  z_.y[i] = m[1] * x + m[3] * y + m[4] * z;
-  z_.z[i] = m[2] * x + m[4] * y + m[5] * z;
-}
-
+// Conjugate gradients, preconditioned by the diagonal, all three components at once.
 Viscosity::Report Viscosity::solve(const Flow& f) {
   const int n = f.count();
-  const auto dot = [](const Floats3& a, const Floats3& b, int i) {
-    return static_cast<double>(a.x[i]) * b.x[i] + static_cast<double>(a.y[i]) * b.y[i] +
-           static_cast<double>(a.z[i]) * b.z[i];
-  };
   const auto sweep = [&](const Floats3& v) {
-    return ViscositySweep{f.lists(),         pair_.data(),      wall_.data(),
+    return ViscositySweep{f.lists(),         pair_.data(),      own_.data(),
                           v.x.data(),        v.y.data(),        v.z.data(),
                           product_.x.data(), product_.y.data(), product_.z.data()};
+  };
+  struct Sums {
+    double rz = 0, rr = 0;
+    void add(float m, float x, float y, float z) {
+      const double square =
+          static_cast<double>(x) * x + static_cast<double>(y) * y + static_cast<double>(z) * z;
+      rr += square;
+      rz += m * square;
+    }
   };
   // first guess: v itself
   const ViscositySweep first = sweep(v_), step = sweep(direction_);
   f.sweep([&](int b, int e, int) { first.run(b, e); });
-  double right2 = 0, rz = 0, rr = 0;
+  double right2 = 0;
+  Sums now;
   for (int i = 0; i < n; ++i) {
     right2 += right_[i].squaredNorm();
     residual_.x[i] = static_cast<float>(right_[i].x()) - product_.x[i];
     residual_.y[i] = static_cast<float>(right_[i].y()) - product_.y[i];
     residual_.z[i] = static_cast<float>(right_[i].z()) - product_.z[i];
-    precondition(i);
-    direction_.x[i] = z_.x[i];
-    direction_.y[i] = z_.y[i];
-    direction_.z[i] = z_.z[i];
-    rz += dot(residual_, z_, i);
-    rr += dot(residual_, residual_, i);
+    direction_.x[i] = inverse_[i] * residual_.x[i];
+    direction_.y[i] = inverse_[i] * residual_.y[i];
+    direction_.z[i] = inverse_[i] * residual_.z[i];
+    now.add(inverse_[i], residual_.x[i], residual_.y[i], residual_.z[i]);
   }
   const double goal2 =
       std::max(kTolerance * kTolerance * right2, kSmallSpeed_ms * kSmallSpeed_ms * n);
   Report report;
-  std::vector<std::array<double, 2>> parts((n + kSweepChunk - 1) / kSweepChunk);
-  while (rr > goal2) {
+  std::vector<Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
+  while (now.rr > goal2) {
     report.atCap = report.iterations >= kCap;
     if (report.atCap) break;
     ++report.iterations;
     const double curvature = f.pool.sumChunks(
         n, kSweepChunk, [&](int b, int e) { return step.run(b, e); }, kSweepAlone);
-    const float alpha = static_cast<float>(rz / curvature);
+    const float alpha = static_cast<float>(now.rz / curvature);
     f.sweep([&](int b, int e, int c) {
-      parts[c] = {0, 0};
+      Sums part;
       for (int i = b; i < e; ++i) {
         v_.x[i] += alpha * direction_.x[i];
         v_.y[i] += alpha * direction_.y[i];
@@ -122,23 +111,21 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
         residual_.x[i] -= alpha * product_.x[i];
         residual_.y[i] -= alpha * product_.y[i];
         residual_.z[i] -= alpha * product_.z[i];
-        precondition(i);
-        parts[c][0] += dot(residual_, z_, i);
-        parts[c][1] += dot(residual_, residual_, i);
+        part.add(inverse_[i], residual_.x[i], residual_.y[i], residual_.z[i]);
       }
+      parts[c] = part;
     });
-    double next = 0;
-    rr = 0;
-    for (const auto& p : parts) {
-      next += p[0];
-      rr += p[1];
+    Sums next;
+    for (const Sums& p : parts) {
+      next.rz += p.rz;
+      next.rr += p.rr;
     }
-    const float keep = static_cast<float>(next / rz);
-    rz = next;
+    const float keep = static_cast<float>(next.rz / now.rz);
+    now = next;
     for (int i = 0; i < n; ++i) {
-      direction_.x[i] = z_.x[i] + keep * direction_.x[i];
-      direction_.y[i] = z_.y[i] + keep * direction_.y[i];
-      direction_.z[i] = z_.z[i] + keep * direction_.z[i];
+      direction_.x[i] = inverse_[i] * residual_.x[i] + keep * direction_.x[i];
+      direction_.y[i] = inverse_[i] * residual_.y[i] + keep * direction_.y[i];
+      direction_.z[i] = inverse_[i] * residual_.z[i] + keep * direction_.z[i];
     }
   }
   return report;
@@ -152,8 +139,8 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, double ove
   viscosity_.resize(n);
   right_.resize(n);
   inverse_.resize(n);
-  wall_.assign(n + 1, 0.f);
-  for (auto* a : {&v_, &residual_, &direction_, &product_, &z_}) a->assign(n + 1);
+  own_.assign(n + 1, 0.f);
+  for (auto* a : {&v_, &residual_, &direction_, &product_}) a->assign(n + 1);
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i)
       viscosity_[i] = override_Pas > 0 ? override_Pas
@@ -178,10 +165,9 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, double ove
       Vec3 sum = right_[i];
       for (int k = nb.start[i]; k < nb.start[i + 1]; ++k) {
         const int j = nb.index[k];
-        const Vec3 g(nb.gx[k], nb.gy[k], nb.gz[k]);
         const Vec3 u(static_cast<double>(v_.x[i]) - v_.x[j], static_cast<double>(v_.y[i]) - v_.y[j],
                      static_cast<double>(v_.z[i]) - v_.z[j]);
-        sum -= pair_[k] * u.dot(g) * g;
+        sum -= pair_[k] * u;
       }
       v[f.particle(i)] = sum / (1 + wallDrag_[f.particle(i)]);
     }

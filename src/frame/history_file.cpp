@@ -62,6 +62,8 @@ void writeMeta(h5::Writer& w, const Meta& m) {
   w.number("/meta", "max_density_error", m.maxDensityError);
   w.number("/meta", "share_above_ten_percent", m.shareAboveTenPercent);
   w.number("/meta", "max_speed_ms", m.maxSpeed_ms);
+  w.number("/meta", "steps", static_cast<double>(m.steps));
+  w.number("/meta", "velocity_clamps", static_cast<double>(m.velocityClamps));
   w.data("/meta/cues_s", {m.cues_s.size()}, m.cues_s);
 }
 

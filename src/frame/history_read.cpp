@@ -73,6 +73,8 @@ void readMeta(h5::Reader& r, Meta& m) {
   m.maxDensityError = r.number("/meta", "max_density_error");
   m.shareAboveTenPercent = r.number("/meta", "share_above_ten_percent");
   m.maxSpeed_ms = r.number("/meta", "max_speed_ms");
+  m.steps = std::llround(std::clamp(r.number("/meta", "steps"), 0.0, 1e15));
+  m.velocityClamps = std::llround(std::clamp(r.number("/meta", "velocity_clamps"), 0.0, 1e15));
   r.data("/meta/cues_s", {kAny}, m.cues_s);
 }
 

@@ -156,6 +156,8 @@ void finishMeta(const bolus::Solver& solver, frame::Meta& m) {
   m.maxDensityError = s.maxDensityError;
   m.shareAboveTenPercent = s.shareAboveTenPercent;
   m.maxSpeed_ms = s.maxSpeed_ms;
+  m.steps = s.steps;
+  m.velocityClamps = s.clamped;
 }
 }  // namespace
 

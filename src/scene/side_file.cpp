@@ -65,6 +65,8 @@ std::string sideFileText(const frame::History& h, const scoring::Metrics& m) {
   j["particle_spacing_mm"] = number(h.meta.particleSpacing_m / kMetrePerMm);
   j["max_particle_speed_m_per_s"] = number(h.meta.maxSpeed_ms);
   j["density_error_share_above_10_percent"] = number(h.meta.shareAboveTenPercent);
+  j["solver_steps"] = h.meta.steps;
+  j["velocity_clamp_hits"] = h.meta.velocityClamps;
   j["scores_measured"] = Json::object();
   for (const auto& [component, score] : m.scores)
     j["scores_measured"][std::to_string(component)] = score ? Json(*score) : Json(nullptr);
