@@ -9,11 +9,12 @@ namespace {
 // Step along the gradient over the diagonal, at most one over the largest eigenvalue of the scaled
 // operator. Ihmsen et al. 2014, sec. 3.2 have 0.5 for Jacobi.
 constexpr float kRelaxation = 0.25f;
-// Share of the particle's own pressure that a wall gives back. 1 is adjoint to the density rate and
-// comes to rest, but under pressure it leans on the contacts; 2 (k_wall = k_i) balances uniform
-// pressure but keeps thin fluids circling. Measured on a 35 mm column, 1 / 1.25 / 1.5 / 2: mean
-// compression 0.46 / 0.31 / 0.14 / 0.03 %, at rest after 0.55 / 0.7 / 0.8 s / never.
-constexpr float kWallMirror = 1.5f;
+// A wall has the pressure of the particle before it: (k_i + k_wall) grad lambda. The rate counts a
+// wall's approach by the same factor, which keeps the operator symmetric: with 1 there and 1.5 or 2
+// here, a column that starts 4 % too dense at its edges blows up to 3 or 28 m/s; so it stays below
+// 0.4 m/s and comes to rest. What is counted twice is only the motion between a particle and its
+// wall, which contacts stop anyway, and the next step measures it anew.
+constexpr float kWallMirror = 2;
 constexpr int kDensityCap = 150;     // iterations, assumed (100 to 300)
 constexpr int kRateCap = 50;         // assumed (20 to 100): leftovers go to the density solve
 constexpr int kLeastIterations = 2;  // Bender & Koschier 2015
@@ -33,7 +34,7 @@ void Projection::prepare(const Flow& f, std::span<const double> wallDrag) {
   for (std::size_t p = 0; p < nb.slot.size(); ++p)
     if (nb.slot[p] < 0) densityK_[p] = rateK_[p] = 0;
   for (int i = 0; i < n; ++i) {
-    const Vec3f g = f.walls[f.particle(i)].gradLambda.cast<float>();
+    const Vec3f g = kWallMirror * f.walls[f.particle(i)].gradLambda.cast<float>();
     wall_.x[i] = g.x();
     wall_.y[i] = g.y();
     wall_.z[i] = g.z();
@@ -49,8 +50,7 @@ void Projection::prepare(const Flow& f, std::span<const double> wallDrag) {
         squares += mobility_[nb.index[k]] * g.squaredNorm();
       }
       const Vec3f wall(wall_.x[i], wall_.y[i], wall_.z[i]);
-      diagonal_[i] =
-          mobility_[i] * std::max(0.f, (own + wall).dot(own + kWallMirror * wall)) + squares;
+      diagonal_[i] = mobility_[i] * std::max(0.f, (own + wall).squaredNorm()) + squares;
     }
   });
 }
@@ -61,7 +61,7 @@ void Projection::densityRate(const Flow& f, const std::vector<Vec3>& v) {
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      double rate = v[p].dot(f.walls[p].gradLambda) - f.walls[p].flux_s;
+      double rate = kWallMirror * (v[p].dot(f.walls[p].gradLambda) - f.walls[p].flux_s);
       for (int k = nb.start[i]; k < nb.start[i + 1] && nb.index[k] < nb.count; ++k)
         rate += (v[p] - v[nb.id[nb.index[k]]]).dot(Vec3(nb.gx[k], nb.gy[k], nb.gz[k]));
       source_[i] = static_cast<float>(rate);
@@ -83,7 +83,6 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double
                                wall_.x.data(),
                                wall_.y.data(),
                                wall_.z.data(),
-                               kWallMirror,
                                acceleration_.x.data(),
                                acceleration_.y.data(),
                                acceleration_.z.data()};

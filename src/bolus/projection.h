@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The two projections of DFSPH (Bender & Koschier 2015), written with rho* = rho / rho0 and the
-// kinematic pressure k = p / rho0 (m^2/s^2); a wall gives back a share m of the particle's own:
-//   a_i = (-V sum (k_i + k_j) gradW_ij - m k_i grad lambda_i) / (1 + drag_i)
-//   D_i(v) = V sum (v_i - v_j).gradW_ij + v_i.grad lambda_i - flux_i
+// kinematic pressure k = p / rho0 (m^2/s^2); a wall has the pressure of the particle before it:
+//   a_i = (-V sum (k_i + k_j) gradW_ij - 2 k_i grad lambda_i) / (1 + drag_i)
+//   D_i(v) = V sum (v_i - v_j).gradW_ij + 2 (v_i.grad lambda_i - flux_i)
 // solved with k >= 0 by projected gradient steps, scaled by the diagonal and with momentum
 // (Nesterov 1983; restarted as O'Donoghue & Candes 2015): a plain Jacobi solve takes three times as
 // many steps. Walls enter nowhere else. Inner loops in single precision; what changes a velocity is

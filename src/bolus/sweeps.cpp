@@ -21,7 +21,7 @@ SC_CLONES void pressure(const PressureSweep& s, int begin, int end) {
       y += k * load(s.pairs.gy + e);
       z += k * load(s.pairs.gz + e);
     }
-    const float wall = s.mirror * s.k[i], m = -s.mobility[i];
+    const float wall = s.k[i], m = -s.mobility[i];
     s.ax[i] = m * (sum(x) + wall * s.wallX[i]);
     s.ay[i] = m * (sum(y) + wall * s.wallY[i]);
     s.az[i] = m * (sum(z) + wall * s.wallZ[i]);

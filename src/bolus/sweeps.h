@@ -21,11 +21,10 @@ struct Floats3 {
   }
 };
 
-/// a_i = -mobility_i (sum (k_i + k_j) g_ij + mirror k_i wall_i)
+/// a_i = -mobility_i (sum (k_i + k_j) g_ij + k_i wall_i)
 struct PressureSweep {
   PairLists pairs;
   const float *k, *mobility, *wallX, *wallY, *wallZ;
-  float mirror;
   float *ax, *ay, *az;
   void run(int begin, int end) const;
 };

@@ -7,9 +7,13 @@
 namespace swallowclip::bolus {
 namespace {
 constexpr double kWallFactor = 2;    // Ferrand et al. 2013, eq. 38: 2 nu |grad gamma| u / distance
-constexpr double kSoftening = 0.01;  // eta^2 / (H/2)^2 against division by zero (Monaghan 2005)
-constexpr int kCap = 300;            // iterations, assumed (100 to 500)
-constexpr double kTolerance = 1e-4;  // residual over right side, assumed (1e-5 to 1e-3)
+constexpr double kSoftening = 1e-4;  // eta^2 / (H/2)^2 against division by zero (Monaghan 2005)
+// The Laplacian of |x|^2 is 6, so the weights of a full neighbourhood, walls included, sum to 3:
+// what they really sum to scales them. Not below this, assumed (0.5 to 0.9): at a free surface
+// there is nothing to be completed.
+constexpr double kLeastEvenness = 0.8;
+constexpr int kCap = 300;                // iterations, assumed (100 to 500)
+constexpr double kTolerance = 1e-4;      // residual over right side, assumed (1e-5 to 1e-3)
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
 
@@ -33,6 +37,15 @@ void Viscosity::assemble(const Flow& f, double density, double dt, double suppor
   const Neighbours& nb = f.neighbours;
   const double eta2 = kSoftening * support * support / 4;
   pair_.assign(nb.index.size(), 0.f);
+  evenness_.resize(f.count());
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      double sum = 3 * f.walls[f.particle(i)].lambdaSlope;
+      for (int k = nb.start[i]; k < nb.start[i + 1]; ++k)
+        sum += nb.r[k] * std::sqrt(nb.gx[k] * nb.gx[k] + nb.gy[k] * nb.gy[k] + nb.gz[k] * nb.gz[k]);
+      evenness_[i] = sum > kLeastEvenness * 3 ? 3 / sum : 1 / kLeastEvenness;
+    }
+  });
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       // Across a slit with no room for a second particle the profile is not resolved: there the
@@ -50,7 +63,8 @@ void Viscosity::assemble(const Flow& f, double density, double dt, double suppor
         // harmonic mean: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
         const double mu =
             2 * viscosity_[i] * viscosity_[nb.index[k]] / (viscosity_[i] + viscosity_[nb.index[k]]);
-        pair_[k] = static_cast<float>(2 * dt * mu / density * g * r / (r * r + eta2));
+        const double even = (evenness_[i] + evenness_[nb.index[k]]) / 2;
+        pair_[k] = static_cast<float>(2 * dt * mu / density * even * g * r / (r * r + eta2));
         diagonal += pair_[k];
       }
       own_[i] = static_cast<float>(1 + wallDrag_[p]);

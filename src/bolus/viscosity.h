@@ -31,7 +31,7 @@ class Viscosity {
   Report solve(const Flow& flow);
 
   std::vector<double> wallDrag_;                // [particle]
-  std::vector<double> viscosity_;               // [slot]
+  std::vector<double> viscosity_, evenness_;    // [slot]
   std::vector<Vec3> right_;                     // [slot] right side
   std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] 1 + wall drag; 1 / diagonal
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]

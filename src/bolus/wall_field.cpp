@@ -167,6 +167,7 @@ WallSample WallField::sample(const Vec3& p) const {
       p, [&](int first, int last) { quadrature.add(at.x(), at.y(), at.z(), first, last, sums); });
   if (sums.nearest < 0) return out;
   out.lambda = sums.lambda;
+  out.lambdaSlope = sums.lambda + sums.shape / 3;
   out.flux_s = sums.flux;
   out.gradLambda = Vec3(sums.gradLambda.data());
   out.friction = sums.friction;

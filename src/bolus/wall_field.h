@@ -22,6 +22,7 @@ namespace swallowclip::bolus {
 
 struct WallSample {
   double lambda = 0;                     ///< 0 far inside, 1 far outside
+  double lambdaSlope = 0;                ///< lambda of the kernel -W' r / 3, as viscosity weighs
   double flux_s = 0;                     ///< 1/s, positive where walls recede
   Vec3 gradLambda = Vec3::Zero();        ///< 1/m, points out of the fluid
   double friction = 0;                   ///< sum int W / distance dS, 1/m^2

@@ -76,7 +76,7 @@ SC_CLONES void integrate(const WallQuadrature& q, float px, float py, float pz, 
   using P = PieceArrays;
   const PieceArrays& p = *q.pieces;
   const F8 ox = all(px), oy = all(py), oz = all(pz), zero = all(0);
-  F8 lambda = zero, flux = zero, friction = zero, area = zero, speed = zero;
+  F8 lambda = zero, shape = zero, flux = zero, friction = zero, area = zero, speed = zero;
   V grad{zero, zero, zero}, drag{zero, zero, zero};
   const I8 lanes{0, 1, 2, 3, 4, 5, 6, 7};
   F8 nearest2 = all(1e30f);
@@ -149,6 +149,7 @@ SC_CLONES void integrate(const WallQuadrature& q, float px, float py, float pz, 
         }
         lambda += dA * offset * (singular / largest(r * r * r, all(1e-30f)) - f);
         const F8 wA = dA * value;
+        shape += wA * offset;
         inside += wA;
         // 0.25 r: pieces seen edge-on have no shear distance of their own
         shear += wA / largest(largest(offset, all(0.25f) * r), all(q.leastShear_m));
@@ -168,6 +169,7 @@ SC_CLONES void integrate(const WallQuadrature& q, float px, float py, float pz, 
     area += select(front, inside, zero);
   }
   sums.lambda += sum(lambda);
+  sums.shape += sum(shape);
   sums.flux += sum(flux);
   sums.friction += sum(friction);
   sums.area += sum(area);

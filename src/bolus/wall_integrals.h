@@ -43,7 +43,7 @@ struct PieceArrays {
 
 /// Sums of one particle; names as in WallSample.
 struct WallSums {
-  double lambda = 0, flux = 0, friction = 0, area = 0;
+  double lambda = 0, shape = 0, flux = 0, friction = 0, area = 0;
   std::array<double, 3> gradLambda{}, frictionVelocity{};
   float normalSpeed = 0, nearest2 = 0;
   int nearest = -1;  ///< piece with the nearest centroid
