@@ -137,24 +137,36 @@ void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std
   }
 }
 
-int Neighbours::countWithin(const Vec3& p, double radius_m) const {
-  if (count == 0) return 0;
+template <class Visit>
+void Neighbours::visitAround(const Vec3& p, Visit&& visit) const {
+  if (count == 0) return;
   const Vec3 at = p - low_;
   Eigen::Vector3i from, to;
   for (int a = 0; a < 3; ++a) {
-    const double cells = std::clamp(at[a] / cell_m_, -2.0, size_[a] + 1.0);
-    from[a] = std::max(static_cast<int>(std::floor(cells)) - 1, 0);
-    to[a] = std::min(static_cast<int>(std::floor(cells)) + 1, size_[a] - 1);
+    const int cell =
+        static_cast<int>(std::floor(std::clamp(at[a] / cell_m_, -2.0, size_[a] + 1.0)));
+    from[a] = std::max(cell - 1, 0);
+    to[a] = std::min(cell + 1, size_[a] - 1);
   }
-  int found = 0;
-  if (from.x() > to.x()) return 0;
+  if (from.x() > to.x()) return;
   for (int cz = from.z(); cz <= to.z(); ++cz)
     for (int cy = from.y(); cy <= to.y(); ++cy) {
       const int row = (cz * size_.y() + cy) * size_.x();
       for (int k = cellStart_[row + from.x()]; k < cellStart_[row + to.x() + 1]; ++k)
-        found += (Vec3(sx_[k], sy_[k], sz_[k]) - at).squaredNorm() < radius_m * radius_m;
+        visit((Vec3(sx_[k], sy_[k], sz_[k]) - at).norm());
     }
+}
+
+int Neighbours::countWithin(const Vec3& p, double radius_m) const {
+  int found = 0;
+  visitAround(p, [&](double away) { found += away < radius_m; });
   return found;
+}
+
+double Neighbours::sumWAt(const Vec3& p, const Kernel& kernel) const {
+  double sum = 0;
+  visitAround(p, [&](double away) { sum += kernel.w(away); });
+  return sum;
 }
 
 namespace {

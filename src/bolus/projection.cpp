@@ -17,6 +17,7 @@ constexpr float kRelaxation = 0.25f;
 constexpr float kWallMirror = 2;
 constexpr int kDensityCap = 150;     // iterations, assumed (100 to 300)
 constexpr int kRateCap = 50;         // assumed (20 to 100): leftovers go to the density solve
+constexpr float kNoLimit = 1e30f;    // m^2/s^2
 constexpr int kLeastIterations = 2;  // Bender & Koschier 2015
 }  // namespace
 
@@ -97,6 +98,7 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double
                  diagonal_.data(),
                  kRelaxation,
                  0,
+                 full ? -kNoLimit : 0.f,
                  x_.data(),
                  y_.data()};
   std::vector<StepSweep::Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
@@ -135,13 +137,23 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double
   return report;
 }
 
+// What compresses all of a full room alike has no solution and no meaning.
+void Projection::takeMeanOff(int count) {
+  if (!full || count == 0) return;
+  double mean = 0;
+  for (int i = 0; i < count; ++i) mean += source_[i] / count;
+  for (int i = 0; i < count; ++i) source_[i] -= static_cast<float>(mean);
+}
+
 ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<double>& density,
                                             double dt_s, std::vector<Vec3>& v) {
   densityRate(f, v);
   // what is still below rest density may close up; nothing is pulled apart
-  for (int i = 0; i < f.count(); ++i)
-    source_[i] =
-        static_cast<float>((source_[i] - std::max(0.0, 1 - density[f.particle(i)]) / dt_s) / dt_s);
+  for (int i = 0; i < f.count(); ++i) {
+    const double open = full ? 0 : std::max(0.0, 1 - density[f.particle(i)]) / dt_s;
+    source_[i] = static_cast<float>((source_[i] - open) / dt_s);
+  }
+  takeMeanOff(f.count());
   return project(f, dt_s, kRateCap, tolerances.rate, rateK_, v);
 }
 
@@ -150,6 +162,7 @@ ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<do
   densityRate(f, v);
   for (int i = 0; i < f.count(); ++i)
     source_[i] = static_cast<float>((source_[i] + (density[f.particle(i)] - 1) / dt_s) / dt_s);
+  takeMeanOff(f.count());
   return project(f, dt_s, kDensityCap, tolerances.density, densityK_, v);
 }
 }  // namespace swallowclip::bolus

@@ -70,10 +70,16 @@ class Projection {
   double pressure_m2s2(int particle) const { return densityK_[particle] + rateK_[particle]; }
 
   Tolerances tolerances;
+  bool full = false;  ///< BolusDef::full
+
+  /// Where the next solves start, [particle]: part of the state of a run.
+  std::vector<double>& densityWarm() { return densityK_; }
+  std::vector<double>& rateWarm() { return rateK_; }
 
  private:
   ProjectionReport project(const Flow& flow, double dt_s, int cap, double tolerance,
                            std::vector<double>& warmK, std::vector<Vec3>& velocities);
+  void takeMeanOff(int count);
   void densityRate(const Flow& flow, const std::vector<Vec3>& velocities);
 
   std::vector<double> densityK_, rateK_;  // [particle], where the next solve starts

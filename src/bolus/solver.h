@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,7 +32,10 @@ struct BolusDef {
   /// Length of the domain along each axis where it repeats, 0 where it does not. Particles live in
   /// [0, period); walls must reach a kernel support beyond both ends (verification cases).
   Vec3 period_m = Vec3::Zero();
-  bool slip = false;            ///< walls without friction
+  bool slip = false;  ///< walls without friction
+  /// The room is full, there is no free surface: pressure is known but for a constant and may be
+  /// negative, and density is compared with its mean (a sheared lattice sums to more than one).
+  bool full = false;
   double longestStep_s = 1e-3;  ///< DESIGN 5
   double courant = 0.4;         ///< spacings per step at the fastest particle, DESIGN 5
   double densityTolerance = 1e-4, rateTolerance = 3e-4;  ///< mean compression left, assumed
@@ -100,6 +104,11 @@ class Solver {
   const Stats& stats() const;
   Ledger ledger() const;
   double particleVolume_m3() const;
+  /// All that the next step depends on, for a solver of the same definition and motion.
+  std::string save() const;
+  /// Goes on where save() was called, to the bit. Errors when the bytes are damaged or belong to
+  /// another bolus; the solver is then as new.
+  Result<void> restore(std::string_view bytes);
   std::uint64_t digest() const;  ///< of positions, velocities and states
 
  private:

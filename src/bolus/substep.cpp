@@ -21,7 +21,8 @@ constexpr double kFilmGap = 0.3;        // spacings, DESIGN 5 (0.6 invents resid
 constexpr double kFilmThickness = 0.1;  // spacings, assumed (0.05 to 0.3): how thick a film drains
 constexpr double kFilmReach = 0.45;     // spacings: just above a particle's rest distance
 constexpr double kTakeUpReach = 1.2;    // spacings, assumed (1 to 1.5)
-constexpr int kTakeUpCount = 3;       // fluid particles that near take a film up, assumed (2 to 5)
+constexpr int kTakeUpCount = 3;  // fluid particles that near take a film up, assumed (2 to 5)
+constexpr double kTakeUpDensity = 1.03;  // of rho0 where a film is taken up, assumed (1 to 1.05)
 constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
 
 // Nusselt (1916): mean speed of a film of thickness h down a wall is rho g h^2 / (3 eta); here per
@@ -60,6 +61,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   active.assign(n, 1);
   projection.resize(static_cast<int>(n));
   projection.tolerances = {def.densityTolerance, def.rateTolerance};
+  projection.full = def.full;
   stats = {};
   errorSum = errorCount = aboveTenCount = infeasible_s = 0;
   stepShare = 1;
@@ -156,9 +158,12 @@ void Solver::Impl::updateStates() {
 }
 
 bool Solver::Impl::staysFilm(std::size_t i) const {
-  return particles.state[i] == State::film && !contacts[i].empty() &&
-         neighbours.countWithin(particles.positions[i], kTakeUpReach * def.spacing_m) <
-             kTakeUpCount;
+  if (particles.state[i] != State::film || contacts[i].empty()) return false;
+  const Vec3& x = particles.positions[i];
+  if (neighbours.countWithin(x, kTakeUpReach * def.spacing_m) < kTakeUpCount) return true;
+  // fluid that is there already makes room first
+  const double density = volume_m3 * (neighbours.sumWAt(x, kernel) + kernel.w(0));
+  return density + field.sample(x).lambda > kTakeUpDensity;
 }
 
 Vec3 Solver::Impl::filmVelocity_ms(int i) const {
@@ -305,9 +310,15 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
 }
 
 void Solver::Impl::measure(Substep& s) {
+  double mean = 0, taking = 0;
+  for (std::size_t i = 0; def.full && i < active.size(); ++i) {
+    mean += active[i] ? particles.densityRatio[i] : 0;
+    taking += active[i];
+  }
+  mean /= std::max(taking, 1.0);
   for (std::size_t i = 0; i < active.size(); ++i) {
     if (!active[i]) continue;
-    const double error = std::max(0.0, particles.densityRatio[i] - 1);
+    const double error = std::max(0.0, particles.densityRatio[i] - (def.full ? mean : 1));
     ++s.fluidCount;
     s.meanError += error;
     s.aboveTenPercent += error > 0.1;

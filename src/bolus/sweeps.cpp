@@ -45,11 +45,11 @@ SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
     }
     const float wall = s.ax[i] * s.wallX[i] + s.ay[i] * s.wallY[i] + s.az[i] * s.wallZ[i];
     const float residual = s.source[i] + (sum(rate) + wall);
-    const float next = std::max(0.f, s.y[i] + s.relax * residual / s.diagonal[i]);
+    const float next = std::max(s.least, s.y[i] + s.relax * residual / s.diagonal[i]);
     // too much pressure is as wrong as too little, unless it is zero already
     sums.residual += std::abs(next - s.y[i]) * s.diagonal[i] / s.relax;
     sums.ahead += static_cast<double>(next - s.y[i]) * (next - s.x[i]);
-    s.y[i] = std::max(0.f, next + s.momentum * (next - s.x[i]));
+    s.y[i] = std::max(s.least, next + s.momentum * (next - s.x[i]));
     s.x[i] = next;
   }
   return sums;

@@ -30,12 +30,13 @@ struct PressureSweep {
 };
 
 /// One projected step of  residual = source + sum (a_i - a_j).g_ij + a_i.wall_i:
-/// x' = max(0, y + relax residual / diagonal),  y' = max(0, x' + momentum (x' - x)).
+/// x' = max(least, y + relax residual / diagonal),  y' = max(least, x' + momentum (x' - x)).
 struct StepSweep {
   PairLists pairs;
   const float *ax, *ay, *az, *wallX, *wallY, *wallZ, *source;
   const float *diagonal;  ///< 0: takes no part
   float relax, momentum;
+  float least;   ///< pressure: 0 at a free surface
   float *x, *y;  ///< in and out
   struct Sums {
     double residual = 0;  ///< of |residual|, where it is not held by x' = 0

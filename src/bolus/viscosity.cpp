@@ -25,9 +25,11 @@ double shearRate_s(const Flow& f, const std::vector<Vec3>& v, int i) {
     gradient += (v[nb.id[nb.index[k]]] - v[p]) * Vec3(nb.gx[k], nb.gy[k], nb.gz[k]).transpose();
   const WallSample& w = f.walls[p];
   const double steep = w.gradLambda.norm();
-  // outside, the velocity goes on linearly through the wall's: (v_wall - v) / distance along n
+  // Outside, the velocity goes on linearly through the wall's: (v_wall - v) / distance along n. Of
+  // such a gradient the missing part of the sum, int_out (y - x).n dW/dn dV, is by parts the share
+  // lambda of the kernel plus distance times grad lambda.
   if (w.friction > 0 && w.area > 0 && steep > 0)
-    gradient += std::min(w.lambda, 1.0) / (w.area * steep) *
+    gradient += std::min(w.lambda + steep * w.area / w.friction, 1.0) / (w.area * steep) *
                 (w.frictionVelocity - w.friction * v[p]) * w.gradLambda.transpose();
   const Mat3 d = 0.5 * (gradient + gradient.transpose());
   return std::sqrt(2 * d.squaredNorm());

@@ -92,9 +92,6 @@ bool WallField::sameWalls(std::span<const Triangle> triangles, std::span<const V
       (high.array() <= built_.high.array()).all() && same(built_.positions, x) &&
       same(built_.velocities, v) && same(built_.skip, skip))
     return true;
-  const Vec3 room = Vec3::Constant(spacing_m_);
-  built_ = {{x.begin(), x.end()}, {v.begin(), v.end()}, {skip.begin(), skip.end()},
-            triangles.size(),     low - room,           high + room};
   return false;
 }
 
@@ -102,6 +99,19 @@ void WallField::build(std::span<const Triangle> triangles, std::span<const Vec3>
                       std::span<const Vec3> v, const Vec3& low, const Vec3& high,
                       std::span<const std::uint8_t> skip) {
   if (sameWalls(triangles, x, v, low, high, skip)) return;
+  const Vec3 room = Vec3::Constant(spacing_m_);
+  rebuild(triangles, x, v, {low - room, high + room}, skip);
+}
+
+void WallField::rebuild(std::span<const Triangle> triangles, std::span<const Vec3> x,
+                        std::span<const Vec3> v, const Box& box,
+                        std::span<const std::uint8_t> skip) {
+  built_ = {{x.begin(), x.end()},
+            {v.begin(), v.end()},
+            {skip.begin(), skip.end()},
+            triangles.size(),
+            box.low,
+            box.high};
   pieces_.clear();
   centroids_.clear();
   largestRadius_m_ = 0;

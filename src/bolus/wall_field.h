@@ -58,6 +58,15 @@ class WallField {
              std::span<const Vec3> velocities, const Vec3& low, const Vec3& high,
              std::span<const std::uint8_t> skip = {});
 
+  /// The box that the last build reached out from; `rebuild` in the same one gives the same bits.
+  struct Box {
+    Vec3 low, high;
+  };
+  Box box() const { return {built_.low, built_.high}; }
+  void rebuild(std::span<const Triangle> triangles, std::span<const Vec3> positions,
+               std::span<const Vec3> velocities, const Box& box,
+               std::span<const std::uint8_t> skip);
+
   WallSample sample(const Vec3& p) const;
 
   /// Contacts within radius (<= H), nearest first, at most kMaxContacts of clearly different

@@ -36,12 +36,13 @@ struct RunOptions {
   std::filesystem::path out = "output";
   int jobs = 1;  ///< threads or clips at a time, >= 1; default: all processors
 
-  std::filesystem::path history;  ///< run.h5: written by simulate, read by measure, draw, export
-  std::string format = "csv";     ///< export: csv, obj or vtp
-  bool json = false;              ///< measure: JSON instead of a table
-  std::filesystem::path input;    ///< import: folder or file of meshes
-  std::filesystem::path map;      ///< import: mapping file
-  std::string topic;              ///< list: components, scores, views, presets, boluses, scenes
+  std::filesystem::path checkpoint;  ///< simulate: kept while it runs, gone on from when it exists
+  std::filesystem::path history;     ///< run.h5: written by simulate, read by measure, draw, export
+  std::string format = "csv";        ///< export: csv, obj or vtp
+  bool json = false;                 ///< measure: JSON instead of a table
+  std::filesystem::path input;       ///< import: folder or file of meshes
+  std::filesystem::path map;         ///< import: mapping file
+  std::string topic;                 ///< list: components, scores, views, presets, boluses, scenes
   std::vector<std::filesystem::path> files;  ///< check, verify
   VerifyOptions verify;
 

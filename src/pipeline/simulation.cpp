@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "kinematics/choreography.h"
 #include "kinematics/events.h"
+#include "pipeline/checkpoint.h"
 #include "pipeline/interrupt.h"
 #include "scene/bolus_file.h"
 #include "scene/swallow_file.h"
@@ -52,6 +53,8 @@ frame::Region regionOf(bolus::State state, std::uint8_t branch, double s_m, doub
   if (s_m < 0.150) return Region::hypopharynx;
   return Region::esophagus;
 }
+
+constexpr int kCheckpointFrames = 5;  // between writing checkpoints: some seconds, assumed
 
 void appendBolus(const bolus::Solver& solver, frame::History& h) {
   const bolus::Particles& p = solver.particles();
@@ -244,12 +247,21 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
   for (const auto& [name, time] : kinematics::plannedEvents(*swallow))
     h.plannedEvents.push_back({name, time});
 
+  std::error_code ec;
+  const bool keeps = solver && !o.checkpoint.empty();
+  if (keeps && std::filesystem::exists(o.checkpoint, ec)) {
+    if (auto read = readCheckpoint(o.checkpoint, *solver, h); !read)
+      return std::unexpected(read.error());
+    progress.note(
+        fmt::format("going on from {} at frame {}", o.checkpoint.string(), h.ledger.size()));
+  }
   const int frames = static_cast<int>(std::floor(swallow->duration_s * fps + 1e-9)) + 1;
   std::vector<Vec3> p, v;
   for (int k = 0; k < frames; ++k) {
     if (interrupted()) return std::unexpected(interruptedError());
     const double t = k / fps;
-    if (solver) {
+    const bool isNew = k >= static_cast<int>(h.ledger.size());
+    if (solver && isNew) {
       if (auto step = solver->advanceTo(t); !step) {
         Error e = step.error();
         e.remedy +=
@@ -257,6 +269,9 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
         return std::unexpected(e);
       }
       appendBolus(*solver, h);
+      if (keeps && k % kCheckpointFrames == kCheckpointFrames - 1)
+        if (auto kept = writeCheckpoint(o.checkpoint, *solver, h); !kept)
+          return std::unexpected(kept.error());
     }
     h.time_s.push_back(t);
     moving->skin.at(t, p, v);
@@ -269,6 +284,7 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
     progress.update(static_cast<double>(k + 1) / frames);
   }
   if (solver) finishMeta(*solver, m);
+  if (keeps) std::filesystem::remove(o.checkpoint, ec);
   return h;
 }
 }  // namespace swallowclip::pipeline

@@ -67,6 +67,7 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
   bolusDef.solver = def.solver;
   bolusDef.period_m = domain->period_m();
   bolusDef.slip = def.slip;
+  bolusDef.full = def.fill.size() == 1 && def.fill.front().kind == FillKind::domain;
   auto start = relaxed(def, *domain, bolusDef, std::move(*filled));
   if (!start) return std::unexpected(start.error());
   bolus::Solver solver(bolusDef, domain->walls(), 1);

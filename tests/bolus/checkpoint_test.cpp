@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// A run that is stopped and taken up again must not be told from one that was not.
+#include <gtest/gtest.h>
+
+#include "bolus/solver.h"
+#include "shapes.h"
+
+namespace swallowclip::bolus {
+namespace {
+BolusDef honey() {
+  BolusDef d;
+  d.swallowedAt_s_m = 0.08;
+  return d;
+}
+
+TEST(Checkpoint, GoesOnToTheBit) {
+  const WallMotion walls = testing::closingTube({});
+  Solver whole(honey(), walls, 1);
+  ASSERT_TRUE(whole.seed(0, {0, 0.06}));
+  ASSERT_TRUE(whole.relax(0, 0.05));
+  ASSERT_TRUE(whole.advanceTo(0.1));
+  const std::string saved = whole.save();
+  ASSERT_TRUE(whole.advanceTo(0.25));
+
+  Solver resumed(honey(), walls, 2);
+  const auto restored = resumed.restore(saved);
+  ASSERT_TRUE(restored) << restored.error().text();
+  EXPECT_DOUBLE_EQ(resumed.time_s(), 0.1);
+  ASSERT_TRUE(resumed.advanceTo(0.25));
+  EXPECT_EQ(resumed.digest(), whole.digest());
+  EXPECT_EQ(resumed.stats().steps, whole.stats().steps);
+  EXPECT_EQ(resumed.stats().meanDensityError, whole.stats().meanDensityError);
+  EXPECT_EQ(resumed.particles().densityRatio, whole.particles().densityRatio);
+}
+
+TEST(Checkpoint, RefusesDamageAndStrangers) {
+  const WallMotion walls = testing::closingTube({});
+  Solver s(honey(), walls, 1);
+  ASSERT_TRUE(s.seed(0, {0, 0.06}));
+  const std::string saved = s.save();
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{23}, saved.size() / 2, saved.size() - 1})
+    EXPECT_FALSE(Solver(honey(), walls, 1).restore(std::string_view(saved).substr(0, length)));
+  for (const std::size_t at : {std::size_t{3}, saved.size() / 3, saved.size() - 2}) {
+    std::string bad = saved;
+    bad[at] = static_cast<char>(bad[at] ^ 0x10);
+    EXPECT_FALSE(Solver(honey(), walls, 1).restore(bad)) << at;
+  }
+  BolusDef other = honey();
+  other.fluid.viscosity_Pas = 0.5;
+  const auto refused = Solver(other, walls, 1).restore(saved);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().problem.find("another bolus"), std::string::npos);
+}
+}  // namespace
+}  // namespace swallowclip::bolus
