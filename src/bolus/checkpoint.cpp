@@ -85,6 +85,9 @@ void all(Archive& a, Impl& s) {
   a(s.active);
   a(s.walls);
   a(s.contacts);
+  a(s.held);
+  a(s.fastestWall_ms);
+  a(s.lastStep_s);
   a(s.wallTriangles);
   a(s.caps);
   a(s.shutBefore);
@@ -137,6 +140,7 @@ std::string Solver::save() const {
   all(out, s);
   out(s.projection.densityWarm());
   out(s.projection.rateWarm());
+  out(s.wcsph.state());
   out(s.field.box());
   out(stateDigest(out.bytes.data(), out.bytes.size()));
   return std::move(out.bytes);
@@ -167,6 +171,9 @@ Result<void> Solver::restore(std::string_view bytes) {
   WallField::Box box;
   in(s.projection.densityWarm());
   in(s.projection.rateWarm());
+  std::array<double, 3> wcsph{};
+  in(wcsph);
+  s.wcsph.setState(wcsph);
   in(box);
   if (!in.fine || !in.atEnd()) return refuse("its arrays do not fit");
   s.motion->at(s.time_s, s.wallPositions, s.wallVelocities);

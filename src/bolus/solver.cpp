@@ -67,8 +67,6 @@ Result<void> checkInputs(const BolusDef& def, const WallMotion& m,
                          const std::vector<Vec3>& positions) {
   if (const std::string bad = def.validate(); !bad.empty())
     return usageError("bolus", bad, "correct the bolus definition");
-  if (def.solver != SolverKind::dfsph)
-    return usageError("solver", "wcsph is not built yet", "use dfsph");
   if (m.triangles.empty()) return {};  // free space
   const int vertices = static_cast<int>(positions.size());
   for (const Triangle& t : m.triangles)
@@ -144,6 +142,7 @@ Result<RelaxReport> Solver::relax(double t_s, double longest_s) {
   s.frozen = false;
   s.settlingViscosity_Pas = 0;
   s.infeasible_s = 0;
+  for (Impl::Held& h : s.held) h.time_s = -INFINITY;  // of walls that stood still
   std::fill(s.particles.velocities.begin(), s.particles.velocities.end(), Vec3::Zero());
   s.meetWalls(t_s);
   s.finishFrame();

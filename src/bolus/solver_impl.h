@@ -10,6 +10,7 @@
 #include "bolus/projection.h"
 #include "bolus/solver.h"
 #include "bolus/viscosity.h"
+#include "bolus/wcsph.h"
 
 namespace swallowclip::bolus {
 
@@ -27,7 +28,7 @@ struct Solver::Impl {
   void start(double t_s, std::vector<Vec3> places, std::vector<Vec3> velocities = {});
   /// Walls at t, particles pushed inside them, states, neighbours, wall integrals, densities.
   int meetWalls(double t_s);
-  double chooseStep_s(double longest_s) const;
+  double chooseStep_s(double longest_s);
   Substep substep(double dt_s);
   Result<void> checkStep(const Substep& s, double dt_s);
   void finishFrame();  ///< path coordinates of all particles, escape check
@@ -44,6 +45,12 @@ struct Solver::Impl {
   void keepOnWall(int i);
   void updatePath(bool all);
   void sampleWalls();
+  bool followWalls(int i);
+  bool compressible() const { return def.solver == SolverKind::wcsph && !frozen; }
+  void chooseSound(double speed_ms);
+  void project(double dt_s, Substep& report);
+  void pushExplicitly(double dt_s, Substep& report);
+  void move(double dt_s, Substep& report);
   int clampSpeeds(double dt_s);
   void measure(Substep& s);
   std::string wallsAt(int particle) const;
@@ -60,11 +67,19 @@ struct Solver::Impl {
   std::vector<Vec3> wallPositions, wallVelocities;
   std::vector<std::vector<Contact>> contacts;
   std::vector<WallSample> walls;
+  struct Held {
+    WallSample sample;
+    Vec3 place = Vec3::Zero();
+    double time_s = -INFINITY;
+  };
+  std::vector<Held> held;  // where and when the walls of a particle were last integrated
+  double fastestWall_ms = 0;
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
   std::vector<std::uint8_t> active;            // takes part in the pressure solve
   Neighbours neighbours;
   Projection projection;
   Viscosity viscosity;
+  Wcsph wcsph;
 
   // The skin's triangles, then the caps of its two branches (made when one first shuts).
   std::vector<Triangle> wallTriangles;
@@ -73,7 +88,7 @@ struct Solver::Impl {
   std::vector<std::uint8_t> skipped;          // [triangle] no wall now
   ColumnIndex columns;
   double filmDrainage_s = 0;  // speed of a draining film per acceleration along the wall
-  double time_s = 0;
+  double time_s = 0, lastStep_s = 0;
   bool frozen = false;  // walls stand still (settling)
   double settlingViscosity_Pas = 0;
   double stepShare = 1;     // of the step that speeds allow, less while steps leave compression

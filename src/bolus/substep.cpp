@@ -17,6 +17,7 @@ constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contact
 constexpr double kMeanError = 1.5e-3, kPeakError = 0.07;  // assumed (half of what is allowed)
 constexpr double kShorten = 0.7, kLengthen = 1.04;        // assumed
 constexpr double kLeastShare = 1.0 / 16;                  // of the step otherwise chosen, assumed
+constexpr double kHeldMove = 0.03;      // spacings, assumed (0.01 to 0.05): lambda within 5e-4
 constexpr double kFilmGap = 0.3;        // spacings, DESIGN 5 (0.6 invents residue)
 constexpr double kFilmThickness = 0.1;  // spacings, assumed (0.05 to 0.3): how thick a film drains
 constexpr double kFilmReach = 0.45;     // spacings: just above a particle's rest distance
@@ -58,8 +59,11 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   particles.branch.assign(n, 0);
   contacts.assign(n, {});
   walls.assign(n, {});
+  held.assign(n, {});
   active.assign(n, 1);
   projection.resize(static_cast<int>(n));
+  wcsph.start();
+  lastStep_s = 0;
   projection.tolerances = {def.densityTolerance, def.rateTolerance};
   projection.full = def.full;
   stats = {};
@@ -78,6 +82,9 @@ void Solver::Impl::evaluateWalls(double t_s) {
     low = low.cwiseMin(particles.positions[i]);
     high = high.cwiseMax(particles.positions[i]);
   }
+  fastestWall_ms = 0;
+  for (const Vec3& v : wallVelocities) fastestWall_ms = std::max(fastestWall_ms, v.squaredNorm());
+  fastestWall_ms = std::sqrt(fastestWall_ms);
   shutBranches(t_s);
   field.build(wallTriangles, wallPositions, wallVelocities, low, high, skipped);
 }
@@ -94,6 +101,7 @@ void Solver::Impl::shutBranches(double t_s) {
   }
   if (shut == shutBefore) return;
   shutBefore = shut;
+  for (Held& h : held) h.time_s = -INFINITY;
   const std::size_t own = motion->triangles.size();
   const auto markTubes = [&](auto&& taken) {
     for (std::size_t k = 0; k < own; ++k)
@@ -184,11 +192,31 @@ void Solver::Impl::keepOnWall(int i) {
 void Solver::Impl::sampleWalls() {
   pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
-      walls[i] = active[i] ? field.sample(particles.positions[i]) : WallSample{};
+      if (!active[i])
+        walls[i] = held[i].sample = {}, held[i].time_s = -INFINITY;
+      else if (!followWalls(i))
+        walls[i] = held[i].sample = field.sample(particles.positions[i]);
       if (def.slip) walls[i].friction = walls[i].area = 0;
       walls[i].gap_m = localGap_m(contacts[i]);
     }
   });
+}
+
+// Between the short steps of wcsph walls and particles hardly move: half of its time would go into
+// the same integrals again. The last ones serve on, lambda along its own gradient and rate.
+bool Solver::Impl::followWalls(int i) {
+  Held& h = held[i];
+  const Vec3 moved = particles.positions[i] - h.place;
+  const double since_s = time_s - h.time_s;
+  if (compressible() && moved.norm() + since_s * fastestWall_ms < kHeldMove * def.spacing_m) {
+    walls[i] = h.sample;
+    walls[i].lambda =
+        std::max(0.0, h.sample.lambda + moved.dot(h.sample.gradLambda) - since_s * h.sample.flux_s);
+    return true;
+  }
+  h.place = particles.positions[i];
+  h.time_s = time_s;
+  return false;
 }
 
 // s and branch of the nearest skin triangle: from the contacts or the wall integrals where a wall
@@ -249,7 +277,7 @@ int Solver::Impl::meetWalls(double t_s) {
   return rescued;
 }
 
-double Solver::Impl::chooseStep_s(double longest_s) const {
+double Solver::Impl::chooseStep_s(double longest_s) {
   double fastest = 0, wall = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
     if (particles.state[i] == State::swallowed) continue;
@@ -257,11 +285,32 @@ double Solver::Impl::chooseStep_s(double longest_s) const {
     if (active[i]) wall = std::max(wall, walls[i].normalSpeed_ms);
   }
   double dt = def.longestStep_s;
+  if (compressible() && neighbours.count > 0) {
+    chooseSound(std::max(fastest, wall));
+    dt = std::min(dt, wcsph.longestStep_s(kernel.support_m() / 2));
+  }
   fastest += dt * def.gravity_ms2.norm();
   dt = std::min(dt, def.courant * def.spacing_m / fastest);
   if (wall > 0) dt = std::min(dt, kWallCourant * def.spacing_m / wall);
   dt = std::max(dt * stepShare, kShortestStep_s);
-  return longest_s / std::ceil(longest_s / dt - 1e-9);  // equal steps to the end, no sliver
+  return lastStep_s = longest_s / std::ceil(longest_s / dt - 1e-9);  // equal steps, no sliver
+}
+
+void Solver::Impl::chooseSound(double speed_ms) {
+  Wcsph::Scales s{.speed_ms = speed_ms,
+                  .bodyForce_ms2 = def.gravity_ms2.norm(),
+                  .viscosity_m2s = apparentViscosity_Pas(def.fluid, speed_ms / def.spacing_m) /
+                                   def.fluid.density_kgm3,
+                  .spacing_m = def.spacing_m};
+  double low = INFINITY, high = -INFINITY;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (!active[i] || s.bodyForce_ms2 == 0) continue;
+    const double h = particles.positions[i].dot(def.gravity_ms2) / s.bodyForce_ms2;
+    low = std::min(low, h);
+    high = std::max(high, h);
+  }
+  s.depth_m = std::max(0.0, high - low) + def.spacing_m;
+  wcsph.chooseSound(s, lastStep_s);
 }
 
 // A particle must not outrun the contacts it knows.
@@ -277,22 +326,54 @@ int Solver::Impl::clampSpeeds(double dt_s) {
   return clamped;
 }
 
-Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
-  Substep report;
+// The projections of DFSPH, with gravity and viscosity between them.
+void Solver::Impl::project(double dt_s, Substep& report) {
   std::vector<Vec3>& v = particles.velocities;
   const Flow flow{neighbours, walls, pool};
   projection.prepare(flow, {});
   report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
   for (std::size_t i = 0; i < v.size(); ++i)
     if (active[i]) v[i] += dt_s * def.gravity_ms2;
-  report.viscosityIterations =
-      viscosity.apply(flow, def.fluid, settlingViscosity_Pas, dt_s, kernel.support_m(), v)
-          .iterations;
+  report.viscosityIterations = viscosity
+                                   .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas},
+                                          dt_s, kernel.support_m(), v)
+                                   .iterations;
   if (settlingViscosity_Pas == 0) projection.prepare(flow, viscosity.wallDrag());
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, v);
   for (std::size_t i = 0; i < v.size(); ++i)
     particles.pressure_Pa[i] =
         def.fluid.density_kgm3 * projection.pressure_m2s2(static_cast<int>(i));
+}
+
+// Pressure of the equation of state and viscosity, both explicit.
+void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
+  const Flow flow{neighbours, walls, pool};
+  wcsph.kick(flow, contacts, def.gravity_ms2, def.spacing_m, def.fluid.density_kgm3, dt_s,
+             particles.velocities, particles.pressure_Pa);
+  const double least_Pas =
+      def.fluid.density_kgm3 * wcsph.leastViscosity_m2s(kernel.support_m() / 2);
+  report.viscosityIterations =
+      viscosity
+          .apply(flow, def.fluid, {.leastPair_Pas = least_Pas, .explicitWhereStable = true}, dt_s,
+                 kernel.support_m(), particles.velocities)
+          .iterations;
+}
+
+// Settling is by projections with both solvers: it ends at rest sooner, and both start from the
+// same places.
+Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
+  Substep report;
+  if (compressible())
+    pushExplicitly(dt_s, report);
+  else
+    project(dt_s, report);
+  move(dt_s, report);
+  measure(report);
+  return report;
+}
+
+void Solver::Impl::move(double dt_s, Substep& report) {
+  std::vector<Vec3>& v = particles.velocities;
   report.clamped = clampSpeeds(dt_s);
   carried.resize(v.size());
   for (std::size_t i = 0; i < v.size(); ++i) {
@@ -305,8 +386,6 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
     particles.positions[i] += dt_s * v[i];
   }
   report.rescued = meetWalls(time_s + (frozen ? 0 : dt_s));
-  measure(report);
-  return report;
 }
 
 void Solver::Impl::measure(Substep& s) {
@@ -330,7 +409,8 @@ void Solver::Impl::measure(Substep& s) {
   if (s.fluidCount > 0) s.meanError /= s.fluidCount;
   // a few particles on their way to being film are no reason
   const double weight = std::min(1.0, 10.0 * s.fluidCount / static_cast<double>(active.size()));
-  const bool rough = weight * s.meanError > kMeanError || s.maxError > kPeakError;
+  const bool rough =
+      !compressible() && (weight * s.meanError > kMeanError || s.maxError > kPeakError);
   stepShare =
       rough ? std::max(kLeastShare, stepShare * kShorten) : std::min(1.0, stepShare * kLengthen);
 }

@@ -12,8 +12,10 @@ constexpr double kSoftening = 1e-4;  // eta^2 / (H/2)^2 against division by zero
 // what they really sum to scales them. Not below this, assumed (0.5 to 0.9): at a free surface
 // there is nothing to be completed.
 constexpr double kLeastEvenness = 0.8;
-constexpr int kCap = 300;                // iterations, assumed (100 to 500)
-constexpr double kTolerance = 1e-4;      // residual over right side, assumed (1e-5 to 1e-3)
+constexpr int kCap = 300;            // iterations, assumed (100 to 500)
+constexpr double kTolerance = 1e-4;  // residual over right side, assumed (1e-5 to 1e-3)
+// Eq. 4.26 (Morris et al. 1997) is dt = 0.125 h^2 / nu; half of it, to be clear of the edge.
+constexpr double kExplicitShare = 0.0625;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
 
@@ -35,7 +37,8 @@ double shearRate_s(const Flow& f, const std::vector<Vec3>& v, int i) {
   return std::sqrt(2 * d.squaredNorm());
 }
 
-void Viscosity::assemble(const Flow& f, double density, double dt, double support) {
+void Viscosity::assemble(const Flow& f, double density, double leastPair, double dt,
+                         double support) {
   const Neighbours& nb = f.neighbours;
   const double eta2 = kSoftening * support * support / 4;
   pair_.assign(nb.index.size(), 0.f);
@@ -63,8 +66,8 @@ void Viscosity::assemble(const Flow& f, double density, double dt, double suppor
                                    static_cast<double>(nb.gz[k]) * nb.gz[k]);
         const double r = nb.r[k];
         // harmonic mean: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
-        const double mu =
-            2 * viscosity_[i] * viscosity_[nb.index[k]] / (viscosity_[i] + viscosity_[nb.index[k]]);
+        const double mu = std::max(leastPair, 2 * viscosity_[i] * viscosity_[nb.index[k]] /
+                                                  (viscosity_[i] + viscosity_[nb.index[k]]));
         const double even = (evenness_[i] + evenness_[nb.index[k]]) / 2;
         pair_[k] = static_cast<float>(2 * dt * mu / density * even * g * r / (r * r + eta2));
         diagonal += pair_[k];
@@ -147,7 +150,15 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
   return report;
 }
 
-Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, double override_Pas,
+bool Viscosity::isStableExplicitly(const Scheme& scheme, double density, double dt,
+                                   double support) const {
+  if (!scheme.explicitWhereStable) return false;
+  double most = scheme.leastPair_Pas;
+  for (double mu : viscosity_) most = std::max(most, mu);
+  return dt * most / density <= kExplicitShare * support * support / 4;
+}
+
+Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Scheme& scheme,
                                    double dt_s, double support_m, std::vector<Vec3>& v) {
   const Neighbours& nb = f.neighbours;
   const int n = f.count();
@@ -159,12 +170,12 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, double ove
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->assign(n + 1);
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i)
-      viscosity_[i] = override_Pas > 0 ? override_Pas
+      viscosity_[i] = scheme.override_Pas > 0 ? scheme.override_Pas
                       : fluid.model == RheologyModel::newtonian
                           ? fluid.viscosity_Pas
                           : apparentViscosity_Pas(fluid, shearRate_s(f, v, i));
   });
-  assemble(f, fluid.density_kgm3, dt_s, support_m);
+  assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
   for (int i = 0; i < n; ++i) {
     const int p = f.particle(i);
     const WallSample& w = f.walls[p];
@@ -173,7 +184,8 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, double ove
     v_.y[i] = static_cast<float>(v[p].y());
     v_.z[i] = static_cast<float>(v[p].z());
   }
-  const Report report = solve(f);
+  const Report report =
+      isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m) ? Report{} : solve(f);
   // The solution enters only through the antisymmetric pair terms, so that momentum is kept to
   // double precision however far the solve went.
   f.sweep([&](int begin, int end, int) {

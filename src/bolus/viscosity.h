@@ -18,16 +18,25 @@ class Viscosity {
     int iterations = 0;
     bool atCap = false;
   };
+  struct Scheme {
+    double override_Pas = 0;   ///< above 0: replaces the fluid's law (used while settling)
+    double leastPair_Pas = 0;  ///< between particles, not at walls (artificial viscosity, eq. 4.12)
+    /// Forward Euler between particles where the step is short enough for it (thesis eq. 4.26);
+    /// the walls' friction stays implicit, for it has no least distance.
+    bool explicitWhereStable = false;
+  };
   /// Viscosities of the moment from the strain rate, then one backward Euler step of `velocities`.
-  /// `viscosityOverride_Pas` > 0 replaces the fluid's law (used while settling).
-  Report apply(const Flow& flow, const Fluid& fluid, double viscosityOverride_Pas, double dt_s,
+  Report apply(const Flow& flow, const Fluid& fluid, const Scheme& scheme, double dt_s,
                double support_m, std::vector<Vec3>& velocities);
 
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
   const std::vector<double>& wallDrag() const { return wallDrag_; }
 
  private:
-  void assemble(const Flow& flow, double density_kgm3, double dt_s, double support_m);
+  void assemble(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
+                double support_m);
+  bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
+                          double support_m) const;
   Report solve(const Flow& flow);
 
   std::vector<double> wallDrag_;                // [particle]

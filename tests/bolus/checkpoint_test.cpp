@@ -13,27 +13,30 @@ BolusDef honey() {
   return d;
 }
 
-TEST(Checkpoint, GoesOnToTheBit) {
+class Checkpoint : public ::testing::TestWithParam<SolverKind> {};
+TEST_P(Checkpoint, GoesOnToTheBit) {
   const WallMotion walls = testing::closingTube({});
-  Solver whole(honey(), walls, 1);
+  BolusDef def = honey();
+  def.solver = GetParam();
+  Solver whole(def, walls, 1);
   ASSERT_TRUE(whole.seed(0, {0, 0.06}));
   ASSERT_TRUE(whole.relax(0, 0.05));
   ASSERT_TRUE(whole.advanceTo(0.1));
   const std::string saved = whole.save();
-  ASSERT_TRUE(whole.advanceTo(0.25));
+  ASSERT_TRUE(whole.advanceTo(0.15));
 
-  Solver resumed(honey(), walls, 2);
+  Solver resumed(def, walls, 2);
   const auto restored = resumed.restore(saved);
   ASSERT_TRUE(restored) << restored.error().text();
   EXPECT_DOUBLE_EQ(resumed.time_s(), 0.1);
-  ASSERT_TRUE(resumed.advanceTo(0.25));
+  ASSERT_TRUE(resumed.advanceTo(0.15));
   EXPECT_EQ(resumed.digest(), whole.digest());
   EXPECT_EQ(resumed.stats().steps, whole.stats().steps);
   EXPECT_EQ(resumed.stats().meanDensityError, whole.stats().meanDensityError);
   EXPECT_EQ(resumed.particles().densityRatio, whole.particles().densityRatio);
 }
 
-TEST(Checkpoint, RefusesDamageAndStrangers) {
+TEST(CheckpointFile, RefusesDamageAndStrangers) {
   const WallMotion walls = testing::closingTube({});
   Solver s(honey(), walls, 1);
   ASSERT_TRUE(s.seed(0, {0, 0.06}));
@@ -52,5 +55,7 @@ TEST(Checkpoint, RefusesDamageAndStrangers) {
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().problem.find("another bolus"), std::string::npos);
 }
+INSTANTIATE_TEST_SUITE_P(Both, Checkpoint, ::testing::Values(SolverKind::dfsph, SolverKind::wcsph),
+                         [](const auto& kind) { return std::string(name(kind.param)); });
 }  // namespace
 }  // namespace swallowclip::bolus

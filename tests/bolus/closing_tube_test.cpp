@@ -13,6 +13,7 @@ namespace {
 struct Case {
   const char* name;
   double viscosity_Pas, density_kgm3, spacing_m;
+  SolverKind solver = SolverKind::dfsph;
 };
 class ClosingTube : public ::testing::TestWithParam<Case> {};
 
@@ -23,6 +24,7 @@ TEST_P(ClosingTube, CarriesAllOfIt) {
   d.fluid.viscosity_Pas = c.viscosity_Pas;
   d.fluid.density_kgm3 = c.density_kgm3;
   d.spacing_m = c.spacing_m;
+  d.solver = c.solver;
   d.swallowedAt_s_m = 0.08;
   Solver s(d, walls, 2);
   ASSERT_TRUE(s.seed(0, {0, 0.06}));
@@ -62,7 +64,9 @@ TEST_P(ClosingTube, CarriesAllOfIt) {
 INSTANTIATE_TEST_SUITE_P(Fluids, ClosingTube,
                          ::testing::Values(Case{"honey", 1.0, 1000, 2e-3},
                                            Case{"thin", 0.004, 1330, 2e-3},
-                                           Case{"syrup", 0.1, 1000, 2e-3}),
+                                           Case{"syrup", 0.1, 1000, 2e-3},
+                                           Case{"honeyWcsph", 1.0, 1000, 2e-3, SolverKind::wcsph},
+                                           Case{"thinWcsph", 0.004, 1330, 2e-3, SolverKind::wcsph}),
                          [](const auto& i) { return i.param.name; });
 }  // namespace
 }  // namespace swallowclip::bolus

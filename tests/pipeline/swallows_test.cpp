@@ -93,6 +93,26 @@ INSTANTIATE_TEST_SUITE_P(Scores, Component4,
                            return name;
                          });
 
+class Solvers : public test::Run {};
+
+// Measured: all 621 swallowed by both, t50 in the same frame.
+TEST_F(Solvers, AgreeOnANormalSwallow) {
+  const auto projected = swallow(options, 0, "thesis-honey");
+  options.solver = "wcsph";
+  const auto compressible = swallow(options, 0, "thesis-honey");
+  ASSERT_TRUE(projected && compressible);
+  EXPECT_EQ(projected->history.meta.solver, "dfsph");
+  EXPECT_EQ(compressible->history.meta.solver, "wcsph");
+  const frame::LedgerRow a = projected->history.ledger.back();
+  const frame::LedgerRow b = compressible->history.ledger.back();
+  ASSERT_EQ(a.start, 621);
+  ASSERT_EQ(b.start, 621);
+  EXPECT_EQ(b.escaped, 0);
+  EXPECT_EQ(b.start, b.fluid + b.film + b.swallowed);
+  EXPECT_NEAR(b.swallowed / 621.0, a.swallowed / 621.0, 0.02);
+  EXPECT_NEAR(compressible->value("t50_past_ramus"), projected->value("t50_past_ramus"), 0.05);
+}
+
 class Viscosity : public test::Run {};
 
 TEST_F(Viscosity, ThinLeavesTheMouthBeforeHoneyBeforeAThickerOne) {
