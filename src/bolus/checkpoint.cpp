@@ -86,6 +86,8 @@ void all(Archive& a, Impl& s) {
   a(s.walls);
   a(s.contacts);
   a(s.held);
+  a(s.contactsAt);
+  a(s.wallsBefore);
   a(s.fastestWall_ms);
   a(s.lastStep_s);
   a(s.wallTriangles);

@@ -40,6 +40,15 @@ void clampVelocity(const std::vector<Contact>& contacts, double spacing_m, doubl
     }
 }
 
+void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& x) {
+  const double kept = keptDistance(contacts, spacing_m);
+  for (int pass = 0; pass < kPasses; ++pass)
+    for (const Contact& c : contacts) {
+      const double d = (x - c.point).dot(c.inward);
+      if (d < kept) x += (kept - d) * c.inward;
+    }
+}
+
 bool projectInside(const WallField& field, double spacing_m, Vec3& x, std::vector<Contact>& out) {
   const double reach = kContactReach * spacing_m;
   bool wasOutside = false;
@@ -50,13 +59,8 @@ bool projectInside(const WallField& field, double spacing_m, Vec3& x, std::vecto
     x = out[0].point + kJustInside * spacing_m * out[0].inward;
   }
   if (out.empty() || out[0].distance_m < 0) return wasOutside;
-  const double kept = keptDistance(out, spacing_m);
   const Vec3 before = x;
-  for (int pass = 0; pass < kPasses; ++pass)
-    for (const Contact& c : out) {
-      const double d = (x - c.point).dot(c.inward);
-      if (d < kept) x += (kept - d) * c.inward;
-    }
+  keepDistance(out, spacing_m, x);
   if (x == before) return wasOutside;
   field.contacts(x, reach, out);
   if (!out.empty() && out[0].distance_m < 0) {  // a corner threw it out: stay

@@ -21,6 +21,9 @@ int facingContact(const std::vector<Contact>& contacts);
 /// Changes v so that the position after dt keeps its distance; never pushes, only stops.
 void clampVelocity(const std::vector<Contact>& contacts, double spacing_m, double dt_s, Vec3& v);
 
+/// Moves x away from the walls that it is nearer to than it may be.
+void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& x);
+
 /// Moves x to where it keeps its distance and leaves the contacts of that place. Returns true when
 /// it was outside (and has been brought back).
 bool projectInside(const WallField& field, double spacing_m, Vec3& x,

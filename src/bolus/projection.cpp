@@ -41,31 +41,23 @@ void Projection::prepare(const Flow& f, std::span<const double> wallDrag) {
     wall_.z[i] = g.z();
     mobility_[i] = wallDrag.empty() ? 1.f : static_cast<float>(1 / (1 + wallDrag[f.particle(i)]));
   }
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      Vec3f own = Vec3f::Zero();
-      float squares = 0;
-      for (int k = nb.start[i]; k < nb.start[i + 1]; ++k) {
-        const Vec3f g(nb.gx[k], nb.gy[k], nb.gz[k]);
-        own += g;
-        squares += mobility_[nb.index[k]] * g.squaredNorm();
-      }
-      const Vec3f wall(wall_.x[i], wall_.y[i], wall_.z[i]);
-      diagonal_[i] = mobility_[i] * std::max(0.f, (own + wall).squaredNorm()) + squares;
-    }
-  });
+  const DiagonalSweep sweep{f.lists(),      mobility_.data(), wall_.x.data(),
+                            wall_.y.data(), wall_.z.data(),   diagonal_.data()};
+  f.sweep([&](int begin, int end, int) { sweep.run(begin, end); });
 }
 
 /// Rate of rho* (1/s) into source_.
 void Projection::densityRate(const Flow& f, const std::vector<Vec3>& v) {
-  const Neighbours& nb = f.neighbours;
+  velocity_.assign(f.count() + 1);
+  for (int i = 0; i < f.count(); ++i) velocity_.set(i, v[f.particle(i)]);
+  const RateSweep sweep{f.lists(), velocity_.x.data(), velocity_.y.data(), velocity_.z.data(),
+                        source_.data()};
   f.sweep([&](int begin, int end, int) {
+    sweep.run(begin, end);
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      double rate = kWallMirror * (v[p].dot(f.walls[p].gradLambda) - f.walls[p].flux_s);
-      for (int k = nb.start[i]; k < nb.start[i + 1] && nb.index[k] < nb.count; ++k)
-        rate += (v[p] - v[nb.id[nb.index[k]]]).dot(Vec3(nb.gx[k], nb.gy[k], nb.gz[k]));
-      source_[i] = static_cast<float>(rate);
+      source_[i] +=
+          static_cast<float>(kWallMirror * (v[p].dot(f.walls[p].gradLambda) - f.walls[p].flux_s));
     }
   });
 }
@@ -120,16 +112,14 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double
     if (report.atCap) break;
     if (all.ahead < 0) theta = 1;
   }
-  const Neighbours& nb = f.neighbours;
+  force_.resize(3 * n);
+  const GradientSweep gradient{f.lists(), x_.data(), force_.data()};
   f.sweep([&](int begin, int end, int) {
+    gradient.run(begin, end);
     for (int i = begin; i < end; ++i) {
-      Vec3 a = Vec3::Zero();
-      for (int e = nb.start[i]; e < nb.start[i + 1]; ++e) {
-        const double k = static_cast<double>(x_[i]) + x_[nb.index[e]];
-        a -= k * Vec3(nb.gx[e], nb.gy[e], nb.gz[e]);
-      }
       const int p = f.particle(i);
-      a -= kWallMirror * static_cast<double>(x_[i]) * f.walls[p].gradLambda;
+      const Vec3 a =
+          -Vec3(&force_[3 * i]) - kWallMirror * static_cast<double>(x_[i]) * f.walls[p].gradLambda;
       v[p] += dt_s * mobility_[i] * a;
       warmK[p] = x_[i];
     }

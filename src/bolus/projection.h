@@ -85,6 +85,7 @@ class Projection {
   std::vector<double> densityK_, rateK_;  // [particle], where the next solve starts
   // [slot] and one slot of zeros
   std::vector<float> mobility_, diagonal_, source_, x_, y_;
-  Floats3 wall_, acceleration_;
+  Floats3 wall_, acceleration_, velocity_;
+  std::vector<double> force_;  // [slot][3]
 };
 }  // namespace swallowclip::bolus

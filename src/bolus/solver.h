@@ -36,6 +36,8 @@ struct BolusDef {
   /// The room is full, there is no free surface: pressure is known but for a constant and may be
   /// negative, and density is compared with its mean (a sheared lattice sums to more than one).
   bool full = false;
+  /// Steps shorten while they leave compression (bolus/substep.cpp); off: never.
+  bool adaptsStep = true;
   double longestStep_s = 1e-3;  ///< DESIGN 5
   double courant = 0.4;         ///< spacings per step at the fastest particle, DESIGN 5
   double densityTolerance = 1e-4, rateTolerance = 3e-4;  ///< mean compression left, assumed

@@ -46,6 +46,8 @@ struct Solver::Impl {
   void updatePath(bool all);
   void sampleWalls();
   bool followWalls(int i);
+  bool findContacts(int i);  ///< true when the particle was outside
+  bool followContacts(int i);
   bool compressible() const { return def.solver == SolverKind::wcsph && !frozen; }
   void chooseSound(double speed_ms);
   void project(double dt_s, Substep& report);
@@ -74,6 +76,8 @@ struct Solver::Impl {
   };
   std::vector<Held> held;  // where and when the walls of a particle were last integrated
   double fastestWall_ms = 0;
+  std::vector<Vec3> contactsAt, wallsBefore;   // places where contacts were last looked for; walls
+  bool wallsStood = false;                     // since the last step
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
   std::vector<std::uint8_t> active;            // takes part in the pressure solve
   Neighbours neighbours;

@@ -60,6 +60,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   contacts.assign(n, {});
   walls.assign(n, {});
   held.assign(n, {});
+  contactsAt.assign(n, Vec3::Constant(INFINITY));
   active.assign(n, 1);
   projection.resize(static_cast<int>(n));
   wcsph.start();
@@ -85,6 +86,8 @@ void Solver::Impl::evaluateWalls(double t_s) {
   fastestWall_ms = 0;
   for (const Vec3& v : wallVelocities) fastestWall_ms = std::max(fastestWall_ms, v.squaredNorm());
   fastestWall_ms = std::sqrt(fastestWall_ms);
+  wallsStood = fastestWall_ms == 0 && wallPositions == wallsBefore;
+  wallsBefore = wallPositions;
   shutBranches(t_s);
   field.build(wallTriangles, wallPositions, wallVelocities, low, high, skipped);
 }
@@ -129,7 +132,7 @@ int Solver::Impl::pushInside() {
     double rescued = 0;
     for (int i = begin; i < end; ++i)
       if (particles.state[i] != State::swallowed) {
-        rescued += projectInside(field, def.spacing_m, particles.positions[i], contacts[i]);
+        rescued += followContacts(i) ? 0.0 : findContacts(i);
         keepOutOfSlits(i);
         keepOnWall(i);
       }
@@ -204,11 +207,37 @@ void Solver::Impl::sampleWalls() {
 
 // Between the short steps of wcsph walls and particles hardly move: half of its time would go into
 // the same integrals again. The last ones serve on, lambda along its own gradient and rate.
+bool Solver::Impl::findContacts(int i) {
+  Vec3& x = particles.positions[i];
+  const bool wasOutside = projectInside(field, def.spacing_m, x, contacts[i]);
+  contactsAt[i] = x;
+  return wasOutside;
+}
+
+// Before walls that stand still a small move changes distances, but no wall points worth looking
+// for.
+bool Solver::Impl::followContacts(int i) {
+  const double most_m = kHeldMove * def.spacing_m;
+  if (fastestWall_ms > 0 || !wallsStood ||
+      (particles.positions[i] - contactsAt[i]).squaredNorm() > most_m * most_m)
+    return false;
+  for (Contact& c : contacts[i]) {
+    c.distance_m = (particles.positions[i] - c.point).dot(c.inward);
+    if (c.distance_m < 0) return false;
+  }
+  keepDistance(contacts[i], def.spacing_m, particles.positions[i]);
+  for (Contact& c : contacts[i]) {
+    c.distance_m = (particles.positions[i] - c.point).dot(c.inward);
+    if (c.distance_m < 0) return false;
+  }
+  return true;
+}
+
 bool Solver::Impl::followWalls(int i) {
   Held& h = held[i];
   const Vec3 moved = particles.positions[i] - h.place;
   const double since_s = time_s - h.time_s;
-  if (compressible() && moved.norm() + since_s * fastestWall_ms < kHeldMove * def.spacing_m) {
+  if (moved.norm() + since_s * fastestWall_ms < kHeldMove * def.spacing_m) {
     walls[i] = h.sample;
     walls[i].lambda =
         std::max(0.0, h.sample.lambda + moved.dot(h.sample.gradLambda) - since_s * h.sample.flux_s);
@@ -409,8 +438,8 @@ void Solver::Impl::measure(Substep& s) {
   if (s.fluidCount > 0) s.meanError /= s.fluidCount;
   // a few particles on their way to being film are no reason
   const double weight = std::min(1.0, 10.0 * s.fluidCount / static_cast<double>(active.size()));
-  const bool rough =
-      !compressible() && (weight * s.meanError > kMeanError || s.maxError > kPeakError);
+  const bool rough = def.adaptsStep && !compressible() &&
+                     (weight * s.meanError > kMeanError || s.maxError > kPeakError);
   stepShare =
       rough ? std::max(kLeastShare, stepShare * kShorten) : std::min(1.0, stepShare * kLengthen);
 }

@@ -76,6 +76,100 @@ SC_CLONES double viscosity(const ViscositySweep& s, int begin, int end) {
   }
   return product;
 }
+
+SC_CLONES void diagonalOf(const DiagonalSweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    F8 x = all(0), y = all(0), z = all(0), squares = all(0);
+    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+      const F8 gx = load(s.pairs.gx + e), gy = load(s.pairs.gy + e), gz = load(s.pairs.gz + e);
+      x += gx;
+      y += gy;
+      z += gz;
+      squares += gather(s.mobility, s.pairs.index + e) * (gx * gx + gy * gy + gz * gz);
+    }
+    const float ox = sum(x) + s.wallX[i], oy = sum(y) + s.wallY[i], oz = sum(z) + s.wallZ[i];
+    s.diagonal[i] = s.mobility[i] * (ox * ox + oy * oy + oz * oz) + sum(squares);
+  }
+}
+
+SC_CLONES void rateOf(const RateSweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const F8 x = all(s.vx[i]), y = all(s.vy[i]), z = all(s.vz[i]);
+    F8 total = all(0);
+    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+      const int* at = s.pairs.index + e;
+      total += (x - gather(s.vx, at)) * load(s.pairs.gx + e) +
+               (y - gather(s.vy, at)) * load(s.pairs.gy + e) +
+               (z - gather(s.vz, at)) * load(s.pairs.gz + e);
+    }
+    s.rate[i] = sum(total);
+  }
+}
+
+SC_CLONES void gradient(const GradientSweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const F8 own = all(s.k[i]);
+    D8 x{}, y{}, z{};
+    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+      const F8 k = own + gather(s.k, s.pairs.index + e);
+      x += wide(k * load(s.pairs.gx + e));
+      y += wide(k * load(s.pairs.gy + e));
+      z += wide(k * load(s.pairs.gz + e));
+    }
+    s.out[3 * i] = sum(x);
+    s.out[3 * i + 1] = sum(y);
+    s.out[3 * i + 2] = sum(z);
+  }
+}
+
+SC_INLINE F8 steepness(const PairLists& p, int e) {
+  const F8 x = load(p.gx + e), y = load(p.gy + e), z = load(p.gz + e);
+  return root(x * x + y * y + z * z);
+}
+
+SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const F8 mu = all(s.viscosity[i]), even = all(s.evenness[i]);
+    F8 total = all(0);
+    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+      const int* at = s.pairs.index + e;
+      const F8 other = gather(s.viscosity, at), r = load(s.r + e);
+      // harmonic: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
+      const F8 both = largest(all(s.leastPair), all(2) * mu * other / (mu + other));
+      const F8 c = all(s.scale) * both * (even + gather(s.evenness, at)) * steepness(s.pairs, e) *
+                   r / (r * r + all(s.eta2));
+      store(s.c + e, c);
+      total += c;
+    }
+    s.diagonal[i] = sum(total);
+  }
+}
+
+SC_CLONES void evennessOf(const EvennessSweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    F8 total = all(0);
+    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes)
+      total += steepness(s.pairs, e) * load(s.r + e);
+    s.evenness[i] = 3 / std::max(3 * s.least, sum(total) + 3 * s.wall[i]);
+  }
+}
+
+SC_CLONES void drag(const DragSweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const F8 vx = all(s.vx[i]), vy = all(s.vy[i]), vz = all(s.vz[i]);
+    D8 x{}, y{}, z{};
+    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+      const int* at = s.pairs.index + e;
+      const F8 c = load(s.c + e);
+      x += wide(c * (vx - gather(s.vx, at)));
+      y += wide(c * (vy - gather(s.vy, at)));
+      z += wide(c * (vz - gather(s.vz, at)));
+    }
+    s.out[3 * i] = sum(x);
+    s.out[3 * i + 1] = sum(y);
+    s.out[3 * i + 2] = sum(z);
+  }
+}
 }  // namespace
 
 void PressureSweep::run(int begin, int end) const {
@@ -86,5 +180,23 @@ StepSweep::Sums StepSweep::run(int begin, int end) const {
 }
 double ViscositySweep::run(int begin, int end) const {
   return viscosity(*this, begin, end);
+}
+void DiagonalSweep::run(int begin, int end) const {
+  diagonalOf(*this, begin, end);
+}
+void RateSweep::run(int begin, int end) const {
+  rateOf(*this, begin, end);
+}
+void GradientSweep::run(int begin, int end) const {
+  gradient(*this, begin, end);
+}
+void PairViscositySweep::run(int begin, int end) const {
+  pairViscosity(*this, begin, end);
+}
+void EvennessSweep::run(int begin, int end) const {
+  evennessOf(*this, begin, end);
+}
+void DragSweep::run(int begin, int end) const {
+  drag(*this, begin, end);
 }
 }  // namespace swallowclip::bolus

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/vec.h"
+
 namespace swallowclip::bolus {
 
 struct PairLists {
@@ -18,6 +20,11 @@ struct Floats3 {
   std::vector<float> x, y, z;
   void assign(std::size_t n) {
     for (auto *c : {&x, &y, &z}) c->assign(n, 0.f);
+  }
+  void set(int i, const Vec3 &v) {
+    x[i] = static_cast<float>(v.x());
+    y[i] = static_cast<float>(v.y());
+    z[i] = static_cast<float>(v.z());
   }
 };
 
@@ -51,5 +58,55 @@ struct ViscositySweep {
   const float *c, *own, *vx, *vy, *vz;
   float *outX, *outY, *outZ;
   double run(int begin, int end) const;
+};
+/// diagonal_i = mobility_i |sum g_ij + wall_i|^2 + sum mobility_j g_ij^2
+struct DiagonalSweep {
+  PairLists pairs;
+  const float *mobility, *wallX, *wallY, *wallZ;
+  float *diagonal;
+  void run(int begin, int end) const;
+};
+
+/// rate_i = sum (v_i - v_j).g_ij
+struct RateSweep {
+  PairLists pairs;
+  const float *vx, *vy, *vz;
+  float *rate;
+  void run(int begin, int end) const;
+};
+
+/// out_i = sum (k_i + k_j) g_ij, summed in double from terms that are antisymmetric to the bit.
+struct GradientSweep {
+  PairLists pairs;
+  const float *k;
+  double *out;  ///< [slot][3]
+  void run(int begin, int end) const;
+};
+
+/// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu harmonic and at least leastPair, even
+/// the mean; diagonal_i = sum c_ij.
+struct PairViscositySweep {
+  PairLists pairs;
+  const float *r, *viscosity, *evenness;
+  float scale, leastPair, eta2;
+  float *c, *diagonal;
+  void run(int begin, int end) const;
+};
+
+/// even_i = 3 / max(3 least, sum |g_ij| r + 3 wall_i)
+struct EvennessSweep {
+  PairLists pairs;
+  const float *r, *wall;
+  float least;
+  float *evenness;
+  void run(int begin, int end) const;
+};
+
+/// out_i = sum c_ij (v_i - v_j), summed as GradientSweep.
+struct DragSweep {
+  PairLists pairs;
+  const float *c, *vx, *vy, *vz;
+  double *out;  ///< [slot][3]
+  void run(int begin, int end) const;
 };
 }  // namespace swallowclip::bolus

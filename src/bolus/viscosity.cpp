@@ -40,18 +40,27 @@ double shearRate_s(const Flow& f, const std::vector<Vec3>& v, int i) {
 void Viscosity::assemble(const Flow& f, double density, double leastPair, double dt,
                          double support) {
   const Neighbours& nb = f.neighbours;
-  const double eta2 = kSoftening * support * support / 4;
-  pair_.assign(nb.index.size(), 0.f);
-  evenness_.resize(f.count());
+  const int n = f.count();
+  pair_.resize(nb.index.size());
+  for (auto* each : {&evenness_, &slope_, &mu_}) each->assign(n + 1, 1.f);
+  for (int i = 0; i < n; ++i) {
+    slope_[i] = static_cast<float>(f.walls[f.particle(i)].lambdaSlope);
+    mu_[i] = static_cast<float>(viscosity_[i]);
+  }
+  const EvennessSweep even{f.lists(), nb.r.data(), slope_.data(),
+                           static_cast<float>(kLeastEvenness), evenness_.data()};
+  f.sweep([&](int begin, int end, int) { even.run(begin, end); });
+  const PairViscositySweep sweep{f.lists(),
+                                 nb.r.data(),
+                                 mu_.data(),
+                                 evenness_.data(),
+                                 static_cast<float>(dt / density),  // 2, and half of two evennesses
+                                 static_cast<float>(leastPair),
+                                 static_cast<float>(kSoftening * support * support / 4),
+                                 pair_.data(),
+                                 inverse_.data()};
   f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      double sum = 3 * f.walls[f.particle(i)].lambdaSlope;
-      for (int k = nb.start[i]; k < nb.start[i + 1]; ++k)
-        sum += nb.r[k] * std::sqrt(nb.gx[k] * nb.gx[k] + nb.gy[k] * nb.gy[k] + nb.gz[k] * nb.gz[k]);
-      evenness_[i] = sum > kLeastEvenness * 3 ? 3 / sum : 1 / kLeastEvenness;
-    }
-  });
-  f.sweep([&](int begin, int end, int) {
+    sweep.run(begin, end);
     for (int i = begin; i < end; ++i) {
       // Across a slit with no room for a second particle the profile is not resolved: there the
       // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
@@ -59,21 +68,8 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
       const WallSample& w = f.walls[p];
       const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
       wallDrag_[p] = dt * viscosity_[i] / density * std::max(kWallFactor * w.friction, slit);
-      double diagonal = 1 + wallDrag_[p];
-      for (int k = nb.start[i]; k < nb.start[i + 1] && nb.index[k] < nb.count; ++k) {
-        const double g = std::sqrt(static_cast<double>(nb.gx[k]) * nb.gx[k] +
-                                   static_cast<double>(nb.gy[k]) * nb.gy[k] +
-                                   static_cast<double>(nb.gz[k]) * nb.gz[k]);
-        const double r = nb.r[k];
-        // harmonic mean: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
-        const double mu = std::max(leastPair, 2 * viscosity_[i] * viscosity_[nb.index[k]] /
-                                                  (viscosity_[i] + viscosity_[nb.index[k]]));
-        const double even = (evenness_[i] + evenness_[nb.index[k]]) / 2;
-        pair_[k] = static_cast<float>(2 * dt * mu / density * even * g * r / (r * r + eta2));
-        diagonal += pair_[k];
-      }
       own_[i] = static_cast<float>(1 + wallDrag_[p]);
-      inverse_[i] = static_cast<float>(1 / diagonal);
+      inverse_[i] = 1 / (own_[i] + inverse_[i]);
     }
   });
 }
@@ -160,7 +156,6 @@ bool Viscosity::isStableExplicitly(const Scheme& scheme, double density, double 
 
 Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Scheme& scheme,
                                    double dt_s, double support_m, std::vector<Vec3>& v) {
-  const Neighbours& nb = f.neighbours;
   const int n = f.count();
   wallDrag_.assign(v.size(), 0.0);
   viscosity_.resize(n);
@@ -180,25 +175,19 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
     const int p = f.particle(i);
     const WallSample& w = f.walls[p];
     right_[i] = w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
-    v_.x[i] = static_cast<float>(v[p].x());
-    v_.y[i] = static_cast<float>(v[p].y());
-    v_.z[i] = static_cast<float>(v[p].z());
+    v_.set(i, v[p]);
   }
   const Report report =
       isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m) ? Report{} : solve(f);
   // The solution enters only through the antisymmetric pair terms, so that momentum is kept to
   // double precision however far the solve went.
+  force_.resize(3 * n);
+  const DragSweep drag{f.lists(),   pair_.data(), v_.x.data(),
+                       v_.y.data(), v_.z.data(),  force_.data()};
   f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      Vec3 sum = right_[i];
-      for (int k = nb.start[i]; k < nb.start[i + 1]; ++k) {
-        const int j = nb.index[k];
-        const Vec3 u(static_cast<double>(v_.x[i]) - v_.x[j], static_cast<double>(v_.y[i]) - v_.y[j],
-                     static_cast<double>(v_.z[i]) - v_.z[j]);
-        sum -= pair_[k] * u;
-      }
-      v[f.particle(i)] = sum / (1 + wallDrag_[f.particle(i)]);
-    }
+    drag.run(begin, end);
+    for (int i = begin; i < end; ++i)
+      v[f.particle(i)] = (right_[i] - Vec3(&force_[3 * i])) / (1 + wallDrag_[f.particle(i)]);
   });
   return report;
 }

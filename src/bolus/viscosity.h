@@ -40,7 +40,8 @@ class Viscosity {
   Report solve(const Flow& flow);
 
   std::vector<double> wallDrag_;                // [particle]
-  std::vector<double> viscosity_, evenness_;    // [slot]
+  std::vector<double> viscosity_, force_;       // [slot]; [slot][3]
+  std::vector<float> evenness_, slope_, mu_;    // [slot + 1]
   std::vector<Vec3> right_;                     // [slot] right side
   std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] 1 + wall drag; 1 / diagonal
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]

@@ -19,6 +19,7 @@ namespace swallowclip::simd {
 inline constexpr int kLanes = 8;
 using F8 = float __attribute__((vector_size(32)));
 using I8 = int __attribute__((vector_size(32)));
+using D8 = double __attribute__((vector_size(64)));
 
 SC_INLINE F8 all(float x) {
   return x - F8{};  // becomes one broadcast
@@ -64,6 +65,12 @@ SC_INLINE F8 root(F8 a) {
 }
 /// Always in this order.
 SC_INLINE float sum(F8 a) {
+  return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
+}
+SC_INLINE D8 wide(F8 a) {
+  return __builtin_convertvector(a, D8);
+}
+SC_INLINE double sum(D8 a) {
   return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
 SC_INLINE bool any(I8 mask) {
