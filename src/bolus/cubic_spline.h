@@ -20,10 +20,9 @@ SC_INLINE F8 slopePerQ(F8 q) {
   return simd::select(q < all(1), all(2.25f) * q - all(3),
                       all(-0.75f) * far * far / simd::largest(q, all(1)));
 }
-/// q^-3 int_0^q W t^2 dt, which is F / r.
-SC_INLINE F8 fPerR(F8 q) {
-  const F8 safe = simd::largest(q, all(1));
-  const F8 inverse3 = all(1) / (safe * safe * safe);
+/// q^-3 int_0^q W t^2 dt, which is F / r; `inverse` is 1 / q.
+SC_INLINE F8 fPerR(F8 q, F8 inverse) {
+  const F8 inverse3 = inverse * inverse * inverse;
   const F8 middle = all(2.f / 3) + q * (all(-0.75f) + q * (all(0.3f) - q * all(1.f / 24))) -
                     all(1.f / 60) * inverse3;
   const F8 inner = all(1.f / 3) + q * q * (all(0.125f) * q - all(0.3f));

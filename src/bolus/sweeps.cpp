@@ -47,7 +47,9 @@ SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
     const float residual = s.source[i] + (sum(rate) + wall);
     const float next = std::max(s.least, s.y[i] + s.relax * residual / s.diagonal[i]);
     // too much pressure is as wrong as too little, unless it is zero already
-    sums.residual += std::abs(next - s.y[i]) * s.diagonal[i] / s.relax;
+    const double left = std::abs(next - s.y[i]) * s.diagonal[i] / s.relax;
+    sums.residual += left;
+    sums.most = std::max(sums.most, left);
     sums.ahead += static_cast<double>(next - s.y[i]) * (next - s.x[i]);
     s.y[i] = std::max(s.least, next + s.momentum * (next - s.x[i]));
     s.x[i] = next;

@@ -47,6 +47,7 @@ struct StepSweep {
   float *x, *y;  ///< in and out
   struct Sums {
     double residual = 0;  ///< of |residual|, where it is not held by x' = 0
+    double most = 0;      ///< the largest of them
     double ahead = 0;     ///< (x' - y).(x' - x): negative when the momentum leads astray
   };
   Sums run(int begin, int end) const;

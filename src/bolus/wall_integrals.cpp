@@ -124,12 +124,13 @@ SC_CLONES void integrate(const WallQuadrature& q, float px, float py, float pz, 
         const V x{u * a.x + t * b.x + w * c.x, u * a.y + t * b.y + w * c.y,
                   u * a.z + t * b.z + w * c.z};
         const F8 r = root(dot(x, x));
+        const F8 inverse = all(1) / largest(r, all(1e-10f));
         const F8 dA = all(at.weight) * ruleArea;
         F8 value, f;  // W, F / r
         if (q.cubicSpline) {
           const F8 perH = r * all(q.perHalfSupport);
           value = all(q.w0) * cubic::w(perH);
-          f = all(q.w0) * cubic::fPerR(perH);
+          f = all(q.w0) * cubic::fPerR(perH, inverse * all(1 / q.perHalfSupport));
         } else {
           const F8 nodes = r * all(q.nodesPerMetre);
           const I8 outside = nodes >= all(static_cast<float>(KernelTable::kIntervals));
@@ -147,7 +148,7 @@ SC_CLONES void integrate(const WallQuadrature& q, float px, float py, float pz, 
           value = select(outside, zero, w0 + part * w1);
           f = select(outside, all(1 / (4 * kPif)) / (r * r * r), f0 + part * f1);
         }
-        lambda += dA * offset * (singular / largest(r * r * r, all(1e-30f)) - f);
+        lambda += dA * offset * (singular * inverse * inverse * inverse - f);
         const F8 wA = dA * value;
         shape += wA * offset;
         inside += wA;

@@ -154,6 +154,10 @@ Result<void> applyVerifyOut(const Words& words, RunOptions& options) {
   options.verify.out = words[0];
   return {};
 }
+Result<void> applyBench(const Words&, RunOptions& options) {
+  options.verify.bench = true;
+  return {};
+}
 Result<void> applyFiles(const Words& words, RunOptions& options) {
   options.files.assign(words.begin(), words.end());
   return {};
@@ -218,6 +222,8 @@ constexpr OptionRow kOptions[] = {
      applySubset},
     {"--solver", "dfsph|wcsph", "Fluid solver instead of that of every case", kVerify, 0, false,
      applyVerifySolver},
+    {"--bench", "", "Time the solver beside published times instead of running cases", kVerify, 0,
+     false, applyBench},
     {"--spacing-mm", "MM", "Particle spacing instead of that of every case, 0.2 to 10", kVerify, 0,
      false, applyVerifySpacing},
     {"--out", "DIR", "Folder for verify.json and charts (default output/verify)", kVerify, 0, false,

@@ -19,6 +19,7 @@ struct VerifyOptions {
   std::string subset = "all";  ///< or short; only without files
   std::string solver;          ///< empty: of the case
   double spacing_mm = 0;       ///< 0: of the case
+  bool bench = false;          ///< time the solver instead
   std::filesystem::path out = "output/verify";
 };
 

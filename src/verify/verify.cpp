@@ -10,6 +10,7 @@
 
 #include "core/file.h"
 #include "pipeline/interrupt.h"
+#include "verify/bench.h"
 #include "verify/report.h"
 #include "verify/run_case.h"
 
@@ -69,6 +70,7 @@ std::string replay(const pipeline::RunOptions& options, const CaseDef& def) {
 }  // namespace
 
 Result<void> verify(const pipeline::RunOptions& options, pipeline::Progress& progress) {
+  if (options.verify.bench) return bench(options, progress);
   auto cases = loadCases(options);
   if (!cases) return std::unexpected(cases.error());
   const fs::path folder = options.verify.out;

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "verify/bench.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "bolus/neighbours.h"
+#include "core/file.h"
+#include "pipeline/interrupt.h"
+#include "verify/case.h"
+#include "verify/domain.h"
+#include "verify/fill.h"
+
+namespace swallowclip::verify {
+namespace {
+/// Step caps, tolerances and the wall seconds per simulated second of SPlisHSPlasH 2.16 (DFSPH,
+/// volume maps, implicit viscosity, single precision, AVX2, 2 threads) on 2 virtual cores, the
+/// slower end of each range; measured for this project, +-30 % from run to run.
+struct Row {
+  double spacing_mm, viscosity_Pas, tolerance, duration_s, peer_s;
+};
+constexpr std::array kRows{Row{2.0, 0.001, 1e-4, 1.0, 1.4},  Row{2.0, 1.0, 1e-4, 1.0, 1.6},
+                           Row{2.0, 5.0, 1e-4, 1.0, 1.8},    Row{2.0, 0.001, 1e-3, 1.0, 0.82},
+                           Row{2.0, 1.0, 1e-3, 1.0, 1.29},   Row{1.0, 0.001, 1e-4, 1.0, 21},
+                           Row{1.0, 1.0, 1e-4, 1.0, 26},     Row{1.0, 5.0, 1e-4, 1.0, 25},
+                           Row{1.0, 0.001, 1e-3, 1.0, 10.6}, Row{1.0, 1.0, 1e-3, 1.0, 13.9},
+                           Row{0.5, 0.001, 1e-4, 0.2, 328},  Row{0.5, 1.0, 1e-4, 0.2, 414},
+                           Row{0.5, 5.0, 1e-4, 0.2, 304},    Row{0.5, 1.0, 1e-3, 0.2, 192}};
+constexpr double kRateTolerance = 1e-3, kCourant = 1;
+
+double stepCap_s(double spacing_mm) {
+  return spacing_mm > 1.5 ? 1e-3 : spacing_mm > 0.7 ? 0.7e-3 : 0.5e-3;
+}
+
+struct Clock {
+  std::chrono::steady_clock::time_point wall = std::chrono::steady_clock::now();
+  std::clock_t cpu = std::clock();
+  double wall_s() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  }
+  double cpu_s() const { return static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC; }
+};
+
+/// One pair of a fixed set of neighbours in nanoseconds, one thread: how fast this machine is.
+double calibration_ns() {
+  std::mt19937 random(1);
+  std::vector<double> x(4096), y(4096), z(4096), sum(4096, 0.0);
+  for (auto* axis : {&x, &y, &z})
+    for (double& c : *axis) c = static_cast<double>(random()) / 4294967296.0;
+  constexpr int kPairs = 40, kRounds = 50;
+  const Clock clock;
+  for (int round = 0; round < kRounds; ++round)
+    for (int i = 0; i < 4096; ++i)
+      for (int k = 1; k <= kPairs; ++k) {
+        const int j = (i + k * 37) & 4095;
+        const double dx = x[i] - x[j], dy = y[i] - y[j], dz = z[i] - z[j];
+        sum[i] += 1 / std::sqrt(dx * dx + dy * dy + dz * dz + 1e-6);
+      }
+  const double ns = clock.cpu_s() * 1e9 / (4096.0 * kPairs * kRounds);
+  return sum[0] > 0 ? ns : 0;  // used, so that the loop stays
+}
+
+struct Measured {
+  std::size_t particles = 0;
+  double wall_s = 0, cpu_s = 0;  // per simulated second
+  bolus::Stats stats;
+};
+
+Result<Measured> run(CaseDef def, const Row& row, int threads) {
+  def.spacing_m = row.spacing_mm * 1e-3;
+  def.fluid.viscosity_Pas = row.viscosity_Pas;
+  def.fluid.minViscosity_Pas = std::min(def.fluid.minViscosity_Pas, row.viscosity_Pas);
+  auto domain = Domain::build(def, def.spacing_m);
+  if (!domain) return std::unexpected(domain.error());
+  auto start = fillDomain(def, *domain, def.spacing_m);
+  if (!start) return std::unexpected(start.error());
+  bolus::BolusDef b;
+  b.fluid = def.fluid;
+  b.spacing_m = start->spacing_m;
+  b.volume_m3 = start->volume_m3;
+  b.gravity_ms2 = def.gravity_ms2;
+  b.longestStep_s = stepCap_s(row.spacing_mm);
+  b.courant = kCourant;
+  b.densityTolerance = row.tolerance;
+  b.rateTolerance = kRateTolerance;
+  b.adaptsStep = false;  // the other solver's steps
+  bolus::Solver solver(b, domain->walls(), threads);
+  if (auto ok = solver.place(0, start->positions); !ok) return std::unexpected(ok.error());
+  const Clock clock;
+  if (auto ok = solver.advanceTo(row.duration_s); !ok) return std::unexpected(ok.error());
+  return Measured{start->positions.size(), clock.wall_s() / row.duration_s,
+                  clock.cpu_s() / row.duration_s, solver.stats()};
+}
+}  // namespace
+
+Result<void> bench(const pipeline::RunOptions& options, pipeline::Progress& progress) {
+  auto def = loadCase(options.scenesFolder() / "verify" / "bench" / "tube-drop.json");
+  if (!def) return std::unexpected(def.error());
+  if (auto ok = prepareFolder(options.verify.out); !ok) return ok;
+  progress.stage("timing");
+  progress.print(fmt::format(
+      "Seconds per simulated second, set-up excluded, {} thread(s). Calibration loop: {:.2f} ns a "
+      "pair.\n{:>8} {:>9} {:>8} {:>9} {:>8} {:>8} {:>8} {:>7} {:>8} {:>9} {:>10}\n",
+      options.jobs, calibration_ns(), "spacing", "particles", "Pa.s", "tolerance", "wall", "cpu",
+      "peer", "faster", "steps", "error", "iterations"));
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Row& row : kRows) {
+    if (pipeline::interrupted()) return std::unexpected(pipeline::interruptedError());
+    if (options.verify.spacing_mm > 0 && row.spacing_mm != options.verify.spacing_mm) continue;
+    auto m = run(*def, row, options.jobs);
+    if (!m) return std::unexpected(m.error());
+    const bolus::Stats& s = m->stats;
+    const double each = 1.0 / static_cast<double>(s.steps);
+    progress.print(fmt::format(
+        "{:>5} mm {:>9} {:>8} {:>7.2f} % {:>8.3g} {:>8.3g} {:>8.3g} {:>6.1f}x {:>8} {:>7.3f} % "
+        "{:>10}\n",
+        row.spacing_mm, m->particles, row.viscosity_Pas, row.tolerance * 100, m->wall_s, m->cpu_s,
+        row.peer_s, row.peer_s / m->wall_s, s.steps, s.meanDensityError * 100,
+        fmt::format("{:.1f}+{:.1f}+{:.1f}", static_cast<double>(s.densityIterations) * each,
+                    static_cast<double>(s.rateIterations) * each,
+                    static_cast<double>(s.viscosityIterations) * each)));
+    rows.push_back({{"spacing_mm", row.spacing_mm},
+                    {"particles", m->particles},
+                    {"viscosity_Pas", row.viscosity_Pas},
+                    {"tolerance", row.tolerance},
+                    {"wall_s_per_s", m->wall_s},
+                    {"cpu_s_per_s", m->cpu_s},
+                    {"peer_s_per_s", row.peer_s},
+                    {"steps", s.steps},
+                    {"mean_density_error", s.meanDensityError},
+                    {"max_density_error", s.maxDensityError}});
+  }
+  return writeFile(options.verify.out / "bench.json", rows.dump(2) + "\n");
+}
+}  // namespace swallowclip::verify
