@@ -18,6 +18,10 @@ constexpr float kWallMirror = 2;
 // No particle may be left with more than this, however good the mean: in a closing slit some few
 // particles far from a solution are thrown out of it at 100 m/s. Assumed (0.5 to 5 %).
 constexpr double kWorstLeft = 0.02;
+// What is compressed already spreads within this time, or within the step if that is longer. Within
+// every step, however short, it would do so at a speed that shortens the next step, and so on to
+// 100 m/s. Assumed (0.05 to 0.2 ms).
+constexpr double kCorrection_s = 1e-4;
 constexpr int kDensityCap = 150;     // iterations, assumed (100 to 300)
 constexpr int kRateCap = 50;         // assumed (20 to 100): leftovers go to the density solve
 constexpr float kNoLimit = 1e30f;    // m^2/s^2
@@ -156,8 +160,9 @@ ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<dou
 ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<double>& density,
                                              double dt_s, std::vector<Vec3>& v) {
   densityRate(f, v);
+  const double within_s = std::max(dt_s, kCorrection_s);
   for (int i = 0; i < f.count(); ++i)
-    source_[i] = static_cast<float>((source_[i] + (density[f.particle(i)] - 1) / dt_s) / dt_s);
+    source_[i] = static_cast<float>((source_[i] + (density[f.particle(i)] - 1) / within_s) / dt_s);
   takeMeanOff(f.count());
   return project(f, dt_s, kDensityCap, tolerances.density, densityK_, v);
 }

@@ -61,6 +61,38 @@ TEST_F(Pipeline, AnInterruptedRenderLeavesNothingThatLooksFinished) {
   EXPECT_TRUE(filesIn(options.out).empty()) << filesIn(options.out).front();
 }
 
+TEST_F(Pipeline, AnInterruptedSimulationGoesOnFromItsCheckpointToTheSameBytes) {
+  shorten(0.6);
+  options.bolus = "thin";
+  options.history = folder / "whole.h5";
+  ASSERT_TRUE(simulate(options, notes));
+
+  options.history = folder / "resumed.h5";
+  options.checkpoint = folder / "run.state";
+  struct StopHalfWay : test::Notes {
+    void update(double share) override {
+      if (share > 0.6) setInterrupted(true);
+    }
+  } stopping;
+  ASSERT_FALSE(simulate(options, stopping));
+  setInterrupted(false);
+  ASSERT_TRUE(std::filesystem::exists(options.checkpoint));
+  EXPECT_FALSE(std::filesystem::exists(options.history));
+  const auto resumed = simulate(options, notes);
+  ASSERT_TRUE(resumed) << resumed.error().text();
+  EXPECT_NE(notes.noted.find("going on from"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(options.checkpoint));
+  EXPECT_TRUE(readFile(folder / "whole.h5").value() == readFile(folder / "resumed.h5").value());
+
+  // one of another run is refused by name
+  ASSERT_FALSE(simulate(options, stopping));
+  setInterrupted(false);
+  options.bolus = "honey";
+  const auto stranger = simulate(options, notes);
+  ASSERT_FALSE(stranger);
+  EXPECT_NE(stranger.error().text().find("run.state"), std::string::npos);
+}
+
 TEST_F(Pipeline, FolderThatIsAFileIsRefusedBeforeAnyWork) {
   std::ofstream(folder / "occupied") << "x";
   options.out = folder / "occupied/out";
