@@ -64,10 +64,17 @@ class Projection {
   /// Makes the density at the end of the step at most rho0.
   ProjectionReport constantDensity(const Flow& flow, const std::vector<double>& densityRatio,
                                    double dt_s, std::vector<Vec3>& velocities);
+  /// Adds dt times the acceleration by the pressure of the last constantDensity to velocities. Put
+  /// in before friction and taken out (negative dt) after it, it lets friction act on forces that
+  /// are in balance; constantDensity then finds the whole pressure anew.
+  void pushByLastPressure(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
   void resize(int particles);
 
-  /// k of both projections of the last step, m^2/s^2.
-  double pressure_m2s2(int particle) const { return densityK_[particle] + rateK_[particle]; }
+  /// Force per area (and rho0) that both projections of the last step transmit, m^2/s^2,
+  /// [particle]: the mean normal stress sum V (k_i + k_j)/2 r |gradW| / 3 of the pairs (Irving &
+  /// Kirkwood 1950). k itself is a multiplier: among disordered particles, where gradW of a linear
+  /// field comes out 10 % small, it is so much larger, and it zigzags from layer to layer.
+  void stress_m2s2(const Flow& flow, std::vector<double>& stress);
 
   Tolerances tolerances;
   bool full = false;  ///< BolusDef::full
@@ -79,12 +86,14 @@ class Projection {
  private:
   ProjectionReport project(const Flow& flow, double dt_s, int cap, double tolerance,
                            std::vector<double>& warmK, std::vector<Vec3>& velocities);
+  void accelerate(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
   void takeMeanOff(int count);
   void densityRate(const Flow& flow, const std::vector<Vec3>& velocities);
 
   std::vector<double> densityK_, rateK_;  // [particle], where the next solve starts
   // [slot] and one slot of zeros
-  std::vector<float> mobility_, diagonal_, source_, x_, y_;
+  std::vector<float> along_, across_;  // how much farther particles move along their wall
+  std::vector<float> mobility_, freedom_, diagonal_, source_, x_, y_;
   Floats3 wall_, acceleration_, velocity_;
   std::vector<double> force_;  // [slot][3]
 };

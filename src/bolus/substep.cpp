@@ -363,15 +363,20 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
   for (std::size_t i = 0; i < v.size(); ++i)
     if (active[i]) v[i] += dt_s * def.gravity_ms2;
+  // Friction acts on gravity and the last pressure together (incremental projection, Guermond et
+  // al. 2006, sec. 3.2). On gravity alone walls would carry a share of it every step and pressure
+  // only the rest: 6 % too little in a 10 mm wide column of 1 Pa.s at steps of 1 ms, half or less
+  // in a squeezed gap with 12 nu dt / h^2 = 1.
+  projection.pushByLastPressure(flow, dt_s, v);
   report.viscosityIterations = viscosity
                                    .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas},
                                           dt_s, kernel.support_m(), v)
                                    .iterations;
   if (settlingViscosity_Pas == 0) projection.prepare(flow, viscosity.wallDrag());
+  projection.pushByLastPressure(flow, -dt_s, v);
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, v);
-  for (std::size_t i = 0; i < v.size(); ++i)
-    particles.pressure_Pa[i] =
-        def.fluid.density_kgm3 * projection.pressure_m2s2(static_cast<int>(i));
+  projection.stress_m2s2(flow, particles.pressure_Pa);
+  for (double& p : particles.pressure_Pa) p *= def.fluid.density_kgm3;
 }
 
 // Pressure of the equation of state and viscosity, both explicit.

@@ -156,6 +156,16 @@ SC_CLONES void evennessOf(const EvennessSweep& s, int begin, int end) {
   }
 }
 
+SC_CLONES void stress(const StressSweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const F8 own = all(s.k[i]);
+    F8 total = all(0);
+    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes)
+      total += (own + gather(s.k, s.pairs.index + e)) * steepness(s.pairs, e) * load(s.r + e);
+    s.out[i] = sum(total) / 6;
+  }
+}
+
 SC_CLONES void drag(const DragSweep& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     const F8 vx = all(s.vx[i]), vy = all(s.vy[i]), vz = all(s.vz[i]);
@@ -197,6 +207,9 @@ void PairViscositySweep::run(int begin, int end) const {
 }
 void EvennessSweep::run(int begin, int end) const {
   evennessOf(*this, begin, end);
+}
+void StressSweep::run(int begin, int end) const {
+  stress(*this, begin, end);
 }
 void DragSweep::run(int begin, int end) const {
   drag(*this, begin, end);

@@ -103,6 +103,14 @@ struct EvennessSweep {
   void run(int begin, int end) const;
 };
 
+/// out_i = sum (k_i + k_j) / 2 r |g_ij| / 3
+struct StressSweep {
+  PairLists pairs;
+  const float *r, *k;
+  float *out;
+  void run(int begin, int end) const;
+};
+
 /// out_i = sum c_ij (v_i - v_j), summed as GradientSweep.
 struct DragSweep {
   PairLists pairs;

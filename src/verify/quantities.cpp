@@ -8,6 +8,10 @@
 
 namespace swallowclip::verify {
 namespace {
+// Pressures of neighbouring layers are tied to each other only through their sum (collocated unknowns:
+// a zigzag from layer to layer has almost no gradient), so two layers make one bin.
+constexpr double kPressureBin = 2;  // spacings
+
 /// Position across the axis of a round room: tubes lie along x, all else stands along z.
 Vec3 fromAxis(const CaseDef& def, const Vec3& p) {
   return def.domain.shape == Shape::tube ? Vec3(0, p.y(), p.z()) : Vec3(p.x(), p.y(), 0);
@@ -245,7 +249,8 @@ void ProfileSum::add(const QuantityDef& q, const Snapshot& s, const Reference& r
     // particles lie half a spacing inside the fluid's ends
     low_ = low - s.spacing_m / 2;
     const double range = high - low + s.spacing_m;
-    const int bins = q.bins > 0 ? q.bins : std::max(2, int(std::lround(range / s.spacing_m)));
+    const double bin_m = (q.of == "pressure" ? kPressureBin : 1) * s.spacing_m;
+    const int bins = q.bins > 0 ? q.bins : std::max(2, int(std::lround(range / bin_m)));
     width_ = range / bins;
     for (auto* sum : {&count_, &along_, &measured_, &reference_}) sum->assign(bins, 0.0);
   }

@@ -36,6 +36,22 @@ std::string jsonNumber(double x) {
   return std::isfinite(x) ? fmt::format("{:.9g}", x) : "null";
 }
 
+/// Points as [coordinate or time, measured, reference].
+std::string curvesJson(const std::vector<Curve>& curves) {
+  std::string out;
+  for (const Curve& curve : curves) {
+    out += fmt::format("{}{{\"time_s\": {}, \"points\": [", out.empty() ? "" : ", ",
+                       jsonNumber(curve.time_s));
+    for (std::size_t k = 0; k < curve.points.size(); ++k) {
+      const ProfileSum::Point& p = curve.points[k];
+      out += fmt::format("{}[{}, {}, {}]", k > 0 ? ", " : "", jsonNumber(p.along),
+                         jsonNumber(p.measured), jsonNumber(p.reference));
+    }
+    out += "]}";
+  }
+  return out;
+}
+
 plot::Chart chartOf(const CaseResult& result, const CheckResult& check) {
   plot::Chart chart;
   chart.title = fmt::format("{}: {}", result.name, check.title);
@@ -103,10 +119,11 @@ std::string resultsJson(const std::vector<CaseResult>& results) {
     for (const CheckResult& c : r.checks) {
       out += fmt::format(
           "{}\n      {{\"quantity\": {}, \"unit\": {}, \"measured\": {}, \"reference\": {}, "
-          "\"error\": {}, \"tolerance\": {}, \"absolute\": {}, \"order\": {}, \"pass\": {}}}",
+          "\"error\": {}, \"tolerance\": {}, \"absolute\": {}, \"order\": {}, \"pass\": {}, "
+          "\"curves\": [{}]}}",
           firstCheck ? "" : ",", quoted(c.title), quoted(c.unit), jsonNumber(c.measured),
           jsonNumber(c.reference), jsonNumber(c.error), jsonNumber(c.tolerance), c.absolute,
-          c.order ? jsonNumber(*c.order) : "null", c.pass);
+          c.order ? jsonNumber(*c.order) : "null", c.pass, curvesJson(c.curves));
       firstCheck = false;
     }
     out += "]}";
