@@ -45,6 +45,7 @@ struct Solver::Impl {
   void keepOnWall(int i);
   void updatePath(bool all);
   void sampleWalls();
+  void sampleWallsOf(int i);
   bool followWalls(int i);
   bool findContacts(int i);  ///< true when the particle was outside
   bool followContacts(int i);
@@ -79,6 +80,7 @@ struct Solver::Impl {
   std::vector<Vec3> contactsAt, wallsBefore;   // places where contacts were last looked for; walls
   bool wallsStood = false;                     // since the last step
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
+  std::vector<int> takenUp;                    // films that became fluid just now
   std::vector<std::uint8_t> active;            // takes part in the pressure solve
   Neighbours neighbours;
   Projection projection;

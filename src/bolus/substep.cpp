@@ -17,8 +17,11 @@ constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contact
 constexpr double kMeanError = 1.5e-3, kPeakError = 0.07;  // assumed (half of what is allowed)
 constexpr double kShorten = 0.7, kLengthen = 1.04;        // assumed
 constexpr double kLeastShare = 1.0 / 16;                  // of the step otherwise chosen, assumed
-constexpr double kHeldMove = 0.03;      // spacings, assumed (0.01 to 0.05): lambda within 5e-4
-constexpr double kFilmGap = 0.3;        // spacings, DESIGN 5 (0.6 invents residue)
+constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
+constexpr double kFilmGap = 0.3;    // spacings, DESIGN 5 (0.6 invents residue)
+// The same in a fold or cusp, where no contact faces the nearest: a slit of that width leaves a
+// fifth of the kernel. At most 1 where sheets do not cross.
+constexpr double kFilmLambda = 0.8;
 constexpr double kFilmThickness = 0.1;  // spacings, assumed (0.05 to 0.3): how thick a film drains
 constexpr double kFilmReach = 0.45;     // spacings: just above a particle's rest distance
 constexpr double kTakeUpReach = 1.2;    // spacings, assumed (1 to 1.5)
@@ -159,13 +162,24 @@ void Solver::Impl::keepOutOfSlits(int i) {
 // Film by the width of the lumen alone, never by density. When the walls part again a film stays on
 // the nearer one and drains, until fluid comes by and takes it up.
 void Solver::Impl::updateStates() {
+  takenUp.clear();
   for (std::size_t i = 0; i < active.size(); ++i) {
     State& s = particles.state[i];
-    if (s != State::swallowed)
-      s = localGap_m(contacts[i]) < kFilmGap * def.spacing_m || staysFilm(i) ? State::film
-                                                                             : State::fluid;
+    if (s != State::swallowed) {
+      const bool wasFilm = s == State::film;
+      s = localGap_m(contacts[i]) < kFilmGap * def.spacing_m || walls[i].lambda > kFilmLambda ||
+                  staysFilm(i)
+              ? State::film
+              : State::fluid;
+      if (wasFilm && s == State::fluid) takenUp.push_back(static_cast<int>(i));
+    }
+    if (s != State::fluid) {
+      walls[i] = held[i].sample = {};
+      held[i].time_s = -INFINITY;
+    }
     active[i] = s == State::fluid;
   }
+  for (const int i : takenUp) sampleWallsOf(i);
 }
 
 bool Solver::Impl::staysFilm(std::size_t i) const {
@@ -173,8 +187,9 @@ bool Solver::Impl::staysFilm(std::size_t i) const {
   const Vec3& x = particles.positions[i];
   if (neighbours.countWithin(x, kTakeUpReach * def.spacing_m) < kTakeUpCount) return true;
   // fluid that is there already makes room first
-  const double density = volume_m3 * (neighbours.sumWAt(x, kernel) + kernel.w(0));
-  return density + field.sample(x).lambda > kTakeUpDensity;
+  double sum = neighbours.sumWAt(x, kernel) + kernel.w(0);
+  for (const int j : takenUp) sum += kernel.w((particles.positions[j] - x).norm());
+  return volume_m3 * sum + field.sample(x).lambda > kTakeUpDensity;
 }
 
 Vec3 Solver::Impl::filmVelocity_ms(int i) const {
@@ -194,15 +209,15 @@ void Solver::Impl::keepOnWall(int i) {
 
 void Solver::Impl::sampleWalls() {
   pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      if (!active[i])
-        walls[i] = held[i].sample = {}, held[i].time_s = -INFINITY;
-      else if (!followWalls(i))
-        walls[i] = held[i].sample = field.sample(particles.positions[i]);
-      if (def.slip) walls[i].friction = walls[i].area = 0;
-      walls[i].gap_m = localGap_m(contacts[i]);
-    }
+    for (int i = begin; i < end; ++i)
+      if (active[i]) sampleWallsOf(i);
   });
+}
+
+void Solver::Impl::sampleWallsOf(int i) {
+  if (!followWalls(i)) walls[i] = held[i].sample = field.sample(particles.positions[i]);
+  if (def.slip) walls[i].friction = walls[i].area = 0;
+  walls[i].gap_m = localGap_m(contacts[i]);
 }
 
 // Between the short steps of wcsph walls and particles hardly move: half of its time would go into
@@ -296,8 +311,8 @@ int Solver::Impl::meetWalls(double t_s) {
   wrapPeriods();
   evaluateWalls(t_s);
   const int rescued = pushInside();
-  updateStates();
   sampleWalls();
+  updateStates();
   updatePath(false);
   neighbours.build(particles.positions, active, table, volume_m3, def.period_m, pool);
   for (std::size_t i = 0; i < active.size(); ++i)
