@@ -231,9 +231,9 @@ Result<StepReport> Solver::advanceTo(double t_s) {
     }
     if (auto ok = s.checkStep(step, dt); !ok) return std::unexpected(ok.error());
   }
-  // Every step takes back what the one before left of compression, so that single pressures
-  // flicker.
-  for (std::size_t i = 0; length_s > 0 && i < sum.size(); ++i) pressure[i] = sum[i] / length_s;
+  // Every projection takes back what the one before left of compression: single pressures flicker.
+  for (std::size_t i = 0; !s.compressible() && length_s > 0 && i < sum.size(); ++i)
+    pressure[i] = sum[i] / length_s;
   s.finishFrame();
   return report;
 }

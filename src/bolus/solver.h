@@ -53,7 +53,8 @@ enum class State : std::uint8_t { fluid = 0, film = 1, swallowed = 2 };
 struct Particles {
   std::vector<Vec3> positions, velocities;
   std::vector<double> densityRatio;  ///< rho / rho0
-  std::vector<double> pressure_Pa;   ///< mean over the last advanceTo, above that of the air
+  std::vector<double>
+      pressure_Pa;  ///< above that of the air; mean over the last advanceTo (wcsph: last step)
   std::vector<State> state;
   std::vector<double> s_m;           ///< path coordinate of the nearest skin point
   std::vector<std::uint8_t> branch;  ///< WallMotion::branch of the nearest skin vertex

@@ -14,11 +14,6 @@ constexpr int kSnapshotsPerMean = 10;  // assumed (5 to 20)
 // An error below this share of what is allowed need not fall on refinement; assumed (0.1 to 5 %).
 constexpr double kAlreadyExact = 0.01;
 
-// Friction is implicit Euler, of first order in time: a flow compared while it starts is followed in
-// steps of at most this share of the time gone by, no shorter than that of the first sample's
-// fifth. Assumed (1/20 to 1/100).
-constexpr double kStartUpShare = 1.0 / 40;
-
 constexpr double kLastShare = 0.02;  // of the time since the last sample, assumed (0.01 to 0.1)
 
 /// All that one spacing gives: per check its series, or its profiles.
@@ -88,8 +83,6 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
   run.curves.resize(def.checks.size());
   for (std::size_t c = 0; c < def.checks.size(); ++c)
     if (def.checks[c].quantity.kind != "profile") run.curves[c].emplace_back();
-  const bool startsUp = std::ranges::any_of(
-      def.checks, [](const CheckDef& c) { return c.reference.kind.ends_with("-startup"); });
   double before = 0;
   for (double sample : def.samples_s) {
     const int count = def.average_s > 0 ? kSnapshotsPerMean : 1;
@@ -104,12 +97,6 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
       const double last = count > 1 ? def.average_s / count : kLastShare * (t - before);
       const double from = std::max(before, t - last);
       before = t;
-      while (startsUp && solver.time_s() < from) {
-        const double gone = std::max(solver.time_s(), def.samples_s.front() / 5);
-        const double next = std::min(from, solver.time_s() + kStartUpShare * gone);
-        if (kStartUpShare * gone >= bolusDef.longestStep_s) break;
-        if (auto ok = solver.advanceTo(next); !ok) return std::unexpected(ok.error());
-      }
       for (const double end : {from, t})
         if (auto ok = solver.advanceTo(end); !ok) return std::unexpected(ok.error());
       Snapshot s = snapshot(def, *domain, solver, bolusDef.spacing_m);

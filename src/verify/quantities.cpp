@@ -8,8 +8,8 @@
 
 namespace swallowclip::verify {
 namespace {
-// Pressures of neighbouring layers are tied to each other only through their sum (collocated unknowns:
-// a zigzag from layer to layer has almost no gradient), so two layers make one bin.
+// Pressures of neighbouring layers are tied to each other only through their sum (collocated
+// unknowns: a zigzag from layer to layer has almost no gradient), so two layers make one bin.
 constexpr double kPressureBin = 2;  // spacings
 
 /// Position across the axis of a round room: tubes lie along x, all else stands along z.
