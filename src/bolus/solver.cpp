@@ -166,7 +166,7 @@ Result<void> Solver::Impl::checkStep(const Substep& s, double dt_s) {
   const std::string where =
       w < 0 ? fmt::format("t = {:.4f} s", time_s)
             : fmt::format("t = {:.4f} s, s = {:.1f} mm", time_s, particles.s_m[w] * 1e3);
-  if (!std::isfinite(s.meanError) || !std::isfinite(s.maxSpeed_ms))
+  if (s.broken || !std::isfinite(s.meanError) || !std::isfinite(s.maxSpeed_ms))
     return failure(where, "the bolus has a position or velocity that is not a number",
                    "check the skin's positions and velocities at this time");
   // A drop caught between closing sheets is on its way to being film; only a body of fluid without

@@ -23,6 +23,7 @@ struct Solver::Impl {
     int fluidCount = 0, aboveTenPercent = 0, worst = -1;
     ProjectionReport density, rate;
     int viscosityIterations = 0, clamped = 0, rescued = 0;
+    bool broken = false;  // a velocity was not a number
   };
 
   void start(double t_s, std::vector<Vec3> places, std::vector<Vec3> velocities = {});

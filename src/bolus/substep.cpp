@@ -433,6 +433,10 @@ void Solver::Impl::move(double dt_s, Substep& report) {
     carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
     if (particles.state[i] == State::film) v[i] = filmVelocity_ms(static_cast<int>(i));
     clampVelocity(contacts[i], def.spacing_m, dt_s, v[i]);
+    if (!v[i].allFinite()) {  // said by checkStep; until then it must not get into the grids
+      v[i].setZero();
+      report.broken = true;
+    }
     report.maxSpeed_ms = std::max(report.maxSpeed_ms, v[i].norm());
     particles.positions[i] += dt_s * v[i];
   }

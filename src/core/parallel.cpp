@@ -88,7 +88,7 @@ void ThreadPool::forChunks(int n, int chunk, const std::function<void(int, int, 
     chunk_.store(chunk, std::memory_order_relaxed);
     finished_.store(0, std::memory_order_relaxed);
     const std::uint64_t round = ticket_.load(std::memory_order_relaxed) / kRound + 1;
-    ticket_.store(round * kRound + kRound / 2, std::memory_order_release);  // nothing to take yet
+    ticket_.store(round * kRound + kRound / 4, std::memory_order_release);  // nothing to take yet
     count_.store(count, std::memory_order_relaxed);
     ticket_.store(round * kRound, std::memory_order_release);
   }

@@ -45,6 +45,20 @@ TEST(Parallel, EveryIndexOnceInFixedChunks) {
   }
 }
 
+TEST(Parallel, NoChunkOutsideTheLoopWhileRoundsChange) {
+  ThreadPool pool(2);
+  std::atomic<int> bad = 0, total = 0;
+  for (int round = 0; round < 200'000; ++round) {
+    const int count = 2 + round % 3;
+    pool.forChunks(count, 1, [&](int begin, int end, int chunk) {
+      bad += chunk < 0 || chunk >= count || begin != chunk || end != chunk + 1;
+      ++total;
+    });
+  }
+  EXPECT_EQ(bad, 0);
+  EXPECT_EQ(total, 200'000 * 3 - 1);  // 2 + 3 + 4 in turn, the last turn two short
+}
+
 TEST(Parallel, ManyShortLoopsEndProperly) {
   ThreadPool pool(4);
   std::atomic<int> total = 0;
