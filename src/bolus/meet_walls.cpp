@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+// Where the walls are, which particles they hold, stop or give back to the fluid.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bolus/solver_impl.h"
+
+namespace swallowclip::bolus {
+namespace {
+constexpr int kWallChunk = 16;      // particles per work item of wall work
+constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
+constexpr double kFilmGap = 0.3;    // spacings, DESIGN 5 (0.6 invents residue)
+// The same in a fold or cusp, where no contact faces the nearest: a slit of that width leaves a
+// fifth of the kernel. At most 1 where sheets do not cross.
+constexpr double kFilmLambda = 0.8;
+constexpr double kFilmReach = 0.45;   // spacings: just above a particle's rest distance
+constexpr double kTakeUpReach = 1.2;  // spacings, assumed (1 to 1.5)
+constexpr int kTakeUpCount = 3;       // fluid particles that near take a film up, assumed (2 to 5)
+constexpr double kTakeUpDensity = 1.03;  // of rho0 where a film is taken up, assumed (1 to 1.05)
+constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
+}  // namespace
+
+void Solver::Impl::evaluateWalls(double t_s) {
+  motion->at(t_s, wallPositions, wallVelocities);
+  if (frozen) std::fill(wallVelocities.begin(), wallVelocities.end(), Vec3::Zero());
+  Vec3 low = Vec3::Constant(INFINITY), high = -low;
+  for (std::size_t i = 0; i < particles.positions.size(); ++i) {
+    if (particles.state[i] == State::swallowed) continue;
+    low = low.cwiseMin(particles.positions[i]);
+    high = high.cwiseMax(particles.positions[i]);
+  }
+  fastestWall_ms = 0;
+  for (const Vec3& v : wallVelocities) fastestWall_ms = std::max(fastestWall_ms, v.squaredNorm());
+  fastestWall_ms = std::sqrt(fastestWall_ms);
+  wallsStood = fastestWall_ms == 0 && wallPositions == wallsBefore;
+  wallsBefore = wallPositions;
+  shutBranches(t_s);
+  field.build(wallTriangles, wallPositions, wallVelocities, low, high, skipped);
+}
+
+// A branch shut lip to lip and empty is no wall: the tube goes, a cap closes the slit it leaves.
+void Solver::Impl::shutBranches(double t_s) {
+  if (wallTriangles.empty()) wallTriangles = motion->triangles;
+  if (!motion->sealed || motion->branch.empty()) return;
+  std::array<bool, 3> shut{};
+  for (int b : {1, 2}) {
+    shut[b] = motion->sealed(t_s, b);
+    for (std::size_t i = 0; shut[b] && i < particles.branch.size(); ++i)
+      shut[b] = particles.state[i] == State::swallowed || particles.branch[i] != b;
+  }
+  if (shut == shutBefore) return;
+  shutBefore = shut;
+  for (Held& h : held) h.time_s = -INFINITY;
+  const std::size_t own = motion->triangles.size();
+  const auto markTubes = [&](auto&& taken) {
+    for (std::size_t k = 0; k < own; ++k)
+      for (int v : motion->triangles[k])
+        if (const int b = motion->branch[v]; b != 0 && taken((b - 1) % 2 + 1)) skipped[k] = 1;
+  };
+  for (int b : {1, 2})
+    if (shut[b] && caps[b].first == caps[b].second) {
+      skipped.assign(own, 0);
+      markTubes([&](int branch) { return branch == b; });
+      const std::vector<Triangle> cap = capHoles(motion->triangles, skipped, wallPositions);
+      caps[b].first = static_cast<int>(wallTriangles.size());
+      wallTriangles.insert(wallTriangles.end(), cap.begin(), cap.end());
+      caps[b].second = static_cast<int>(wallTriangles.size());
+    }
+  skipped.assign(wallTriangles.size(), 0);
+  markTubes([&](int branch) { return shut[branch]; });
+  for (int b : {1, 2})
+    if (!shut[b]) std::fill(&skipped[0] + caps[b].first, &skipped[0] + caps[b].second, 1);
+}
+
+int Solver::Impl::pushInside() {
+  const int n = static_cast<int>(particles.positions.size());
+  return static_cast<int>(pool.sumChunks(n, kWallChunk, [&](int begin, int end) {
+    double rescued = 0;
+    for (int i = begin; i < end; ++i)
+      if (particles.state[i] != State::swallowed) {
+        rescued += followContacts(i) ? 0.0 : findContacts(i);
+        keepOutOfSlits(i);
+        keepOnWall(i);
+      }
+    return rescued;
+  }));
+}
+
+// A gap too narrow for particles counts as shut: walls may close on a particle (film), but none
+// flows in from a wider place. Instead it stays before the slit's mouth, moving with the wall
+// there.
+void Solver::Impl::keepOutOfSlits(int i) {
+  const double shut_m = kFilmGap * def.spacing_m;
+  if (carried.empty() || particles.state[i] != State::fluid || localGap_m(contacts[i]) >= shut_m)
+    return;
+  std::vector<Contact> before;
+  Vec3 place = carried[i].first;
+  projectInside(field, def.spacing_m, place, before);
+  if (before.empty() || before[0].distance_m < 0 || localGap_m(before) < shut_m) return;
+  particles.positions[i] = place;
+  particles.velocities[i] = carried[i].second;
+  contacts[i] = std::move(before);
+}
+
+// Film by the width of the lumen alone, never by density. When the walls part again a film stays on
+// the nearer one and drains, until fluid comes by and takes it up.
+void Solver::Impl::updateStates() {
+  takenUp.clear();
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    State& s = particles.state[i];
+    if (s != State::swallowed) {
+      const bool wasFilm = s == State::film;
+      s = localGap_m(contacts[i]) < kFilmGap * def.spacing_m || walls[i].lambda > kFilmLambda ||
+                  staysFilm(i)
+              ? State::film
+              : State::fluid;
+      if (wasFilm && s == State::fluid) takenUp.push_back(static_cast<int>(i));
+    }
+    if (s != State::fluid) {
+      walls[i] = held[i].sample = {};
+      held[i].time_s = -INFINITY;
+    }
+    active[i] = s == State::fluid;
+  }
+  for (const int i : takenUp) sampleWallsOf(i);
+}
+
+bool Solver::Impl::staysFilm(std::size_t i) const {
+  if (particles.state[i] != State::film || contacts[i].empty()) return false;
+  const Vec3& x = particles.positions[i];
+  if (neighbours.countWithin(x, kTakeUpReach * def.spacing_m) < kTakeUpCount) return true;
+  // fluid that is there already makes room first
+  double sum = neighbours.sumWAt(x, kernel) + kernel.w(0);
+  for (const int j : takenUp) sum += kernel.w((particles.positions[j] - x).norm());
+  return volume_m3 * sum + field.sample(x).lambda > kTakeUpDensity;
+}
+
+Vec3 Solver::Impl::filmVelocity_ms(int i) const {
+  const std::vector<Contact>& c = contacts[i];
+  if (localGap_m(c) < kFilmGap * def.spacing_m)  // held by two sheets
+    return (c[0].velocity + c[facingContact(c)].velocity) / 2;
+  const Vec3 along = def.gravity_ms2 - def.gravity_ms2.dot(c[0].inward) * c[0].inward;
+  return c[0].velocity + (frozen ? 0.0 : filmDrainage_s) * along;
+}
+
+void Solver::Impl::keepOnWall(int i) {
+  if (particles.state[i] != State::film || contacts[i].empty()) return;
+  const Contact& c = contacts[i][0];
+  const double farthest_m = kFilmReach * def.spacing_m;
+  if (c.distance_m > farthest_m) particles.positions[i] = c.point + farthest_m * c.inward;
+}
+
+void Solver::Impl::sampleWalls() {
+  pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      if (active[i]) sampleWallsOf(i);
+  });
+}
+
+void Solver::Impl::sampleWallsOf(int i) {
+  if (!followWalls(i)) walls[i] = held[i].sample = field.sample(particles.positions[i]);
+  if (def.slip) walls[i].friction = walls[i].area = 0;
+  walls[i].gap_m = localGap_m(contacts[i]);
+}
+
+// Between the short steps of wcsph walls and particles hardly move: half of its time would go into
+// the same integrals again. The last ones serve on, lambda along its own gradient and rate.
+bool Solver::Impl::findContacts(int i) {
+  Vec3& x = particles.positions[i];
+  const bool wasOutside = projectInside(field, def.spacing_m, x, contacts[i]);
+  contactsAt[i] = x;
+  return wasOutside;
+}
+
+// Before walls that stand still a small move changes distances, but no wall points worth looking
+// for.
+bool Solver::Impl::followContacts(int i) {
+  const double most_m = kHeldMove * def.spacing_m;
+  if (fastestWall_ms > 0 || !wallsStood ||
+      (particles.positions[i] - contactsAt[i]).squaredNorm() > most_m * most_m)
+    return false;
+  for (Contact& c : contacts[i]) {
+    c.distance_m = (particles.positions[i] - c.point).dot(c.inward);
+    if (c.distance_m < 0) return false;
+  }
+  keepDistance(contacts[i], def.spacing_m, particles.positions[i]);
+  for (Contact& c : contacts[i]) {
+    c.distance_m = (particles.positions[i] - c.point).dot(c.inward);
+    if (c.distance_m < 0) return false;
+  }
+  return true;
+}
+
+bool Solver::Impl::followWalls(int i) {
+  Held& h = held[i];
+  const Vec3 moved = particles.positions[i] - h.place;
+  const double since_s = time_s - h.time_s;
+  if (moved.norm() + since_s * fastestWall_ms < kHeldMove * def.spacing_m) {
+    walls[i] = h.sample;
+    walls[i].lambda =
+        std::max(0.0, h.sample.lambda + moved.dot(h.sample.gradLambda) - since_s * h.sample.flux_s);
+    return true;
+  }
+  h.place = particles.positions[i];
+  h.time_s = time_s;
+  return false;
+}
+
+// s and branch of the nearest skin triangle: from the contacts or the wall integrals where a wall
+// is within reach, else by a full search near the UES plane and at the ends of frames.
+void Solver::Impl::updatePath(bool all) {
+  const WallMotion& m = *motion;
+  if (m.s_m.empty() && m.branch.empty()) return;
+  const double nearEnd = def.swallowedAt_s_m - kNearEnd_m;
+  pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      if (particles.state[i] == State::swallowed) continue;
+      int k = contacts[i].empty() ? walls[i].nearestTriangle : contacts[i][0].triangle;
+      const Vec3& p = particles.positions[i];
+      if (k < 0 && !all && particles.s_m[i] < nearEnd) continue;
+      if (k < 0) k = nearestPoint(p, wallPositions, m.triangles).triangle;
+      const Triangle& t = wallTriangles[k];
+      const Vec3 bary =
+          closestBarycentric(p, wallPositions[t[0]], wallPositions[t[1]], wallPositions[t[2]]);
+      if (!m.s_m.empty()) particles.s_m[i] = Vec3(m.s_m[t[0]], m.s_m[t[1]], m.s_m[t[2]]).dot(bary);
+      int corner = 0;
+      bary.maxCoeff(&corner);
+      if (!m.branch.empty()) particles.branch[i] = m.branch[t[corner]];
+    }
+  });
+  if (m.s_m.empty() || frozen) return;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const bool insideLumen = contacts[i].empty() || contacts[i][0].distance_m >= 0;
+    if (particles.state[i] == State::swallowed || !insideLumen) continue;
+    if (particles.s_m[i] < def.swallowedAt_s_m || particles.branch[i] != 0) continue;
+    particles.state[i] = State::swallowed;
+    particles.velocities[i].setZero();
+    particles.densityRatio[i] = 1;
+    active[i] = 0;
+    contacts[i].clear();
+  }
+}
+
+void Solver::Impl::wrapPeriods() {
+  for (int a = 0; a < 3; ++a) {
+    const double length = def.period_m[a];
+    if (length <= 0) continue;
+    for (Vec3& x : particles.positions) x[a] -= length * std::floor(x[a] / length);
+  }
+}
+
+int Solver::Impl::meetWalls(double t_s) {
+  time_s = t_s;
+  wrapPeriods();
+  evaluateWalls(t_s);
+  const int rescued = pushInside();
+  sampleWalls();
+  updateStates();
+  updatePath(false);
+  neighbours.build(particles.positions, active, table, volume_m3, def.period_m, pool);
+  for (std::size_t i = 0; i < active.size(); ++i)
+    particles.densityRatio[i] =
+        active[i] ? neighbours.sumW[neighbours.slot[i]] + walls[i].lambda : 1.0;
+  return rescued;
+}
+}  // namespace swallowclip::bolus
