@@ -125,8 +125,6 @@ std::uint64_t kindOf(const BolusDef& d, std::size_t triangles) {
                             f.eta0_Pas,
                             f.etaInf_Pas,
                             f.lambda_s,
-                            f.surfaceTension_Nm,
-                            f.contactAngle_deg,
                             f.minViscosity_Pas,
                             f.maxViscosity_Pas,
                             static_cast<double>(triangles)};

@@ -22,8 +22,6 @@ struct Fluid {
   double index = 1;             ///< n of power law, Herschel-Bulkley and Carreau
   double yield_Pa = 0;          ///< Herschel-Bulkley
   double eta0_Pas = 0, etaInf_Pas = 0.003, lambda_s = 10;  ///< Carreau (clinical-reference 4)
-  double surfaceTension_Nm = 0;                            ///< no solver acts on it yet
-  double contactAngle_deg = 0;  ///< with the wall, through the fluid; only with surface tension
   double minViscosity_Pas = 0.002, maxViscosity_Pas = 100;  ///< clip (clinical-reference 4)
 
   /// "" when every number is usable, else what is wrong with which field.

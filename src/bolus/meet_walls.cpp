@@ -164,8 +164,6 @@ void Solver::Impl::sampleWallsOf(int i) {
   walls[i].gap_m = localGap_m(contacts[i]);
 }
 
-// Between the short steps of wcsph walls and particles hardly move: half of its time would go into
-// the same integrals again. The last ones serve on, lambda along its own gradient and rate.
 bool Solver::Impl::findContacts(int i) {
   Vec3& x = particles.positions[i];
   const bool wasOutside = projectInside(field, def.spacing_m, x, contacts[i]);
@@ -192,11 +190,15 @@ bool Solver::Impl::followContacts(int i) {
   return true;
 }
 
+// While walls and particles hardly move, in wcsph's short steps or where walls stand still, most of
+// the time would go into the same integrals again. The last ones serve on, lambda along its own
+// gradient and rate; no longer than walls as fast as they were then or are now take to move.
 bool Solver::Impl::followWalls(int i) {
   Held& h = held[i];
   const Vec3 moved = particles.positions[i] - h.place;
   const double since_s = time_s - h.time_s;
-  if (moved.norm() + since_s * fastestWall_ms < kHeldMove * def.spacing_m) {
+  const double wall_ms = std::max(fastestWall_ms, h.fastestWall_ms);
+  if (moved.norm() + since_s * wall_ms < kHeldMove * def.spacing_m) {
     walls[i] = h.sample;
     walls[i].lambda =
         std::max(0.0, h.sample.lambda + moved.dot(h.sample.gradLambda) - since_s * h.sample.flux_s);
@@ -204,6 +206,7 @@ bool Solver::Impl::followWalls(int i) {
   }
   h.place = particles.positions[i];
   h.time_s = time_s;
+  h.fastestWall_ms = fastestWall_ms;
   return false;
 }
 

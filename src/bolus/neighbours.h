@@ -20,15 +20,7 @@ class PointGrid {
   /// Only points with take[i] != 0 enter; an empty `take` takes all.
   void build(std::span<const Vec3> points, std::span<const std::uint8_t> take, double cell_m);
 
-  /// Calls visit(index) for the points of the 27 cells around p.
-  template <class Visit>
-  void around(const Vec3& p, Visit&& visit) const {
-    rowsAround(p, [&](int first, int last) {
-      for (int k = first; k < last; ++k) visit(order_[k]);
-    });
-  }
-
-  /// Calls visit(first, last) for each row of those cells: places in order().
+  /// Calls visit(first, last) for each row of the 27 cells around p: places in order().
   template <class Visit>
   void rowsAround(const Vec3& p, Visit&& visit) const {
     if (order_.empty()) return;

@@ -16,13 +16,6 @@ constexpr double kEmptyArea_m2 = 1e-16;  // slivers without a usable normal
 constexpr double kLeastShearDistance = 0.3;
 constexpr double kSameDirection = 0.95;  // cosine above which two contacts say the same
 
-/// The lowest 16 bits, two zeros between each.
-std::uint64_t spread(std::uint64_t x) {
-  x = (x | x << 16) & 0x0000ff0000ff;
-  x = (x | x << 8) & 0x00f00f00f00f;
-  x = (x | x << 4) & 0x0c30c30c30c3;
-  return (x | x << 2) & 0x249249249249;
-}
 double cornerAngle(const Vec3& at, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - at, v = c - at;
   return std::atan2(u.cross(v).norm(), u.dot(v));
@@ -134,30 +127,8 @@ void WallField::rebuild(std::span<const Triangle> triangles, std::span<const Vec
     addPiece(makePiece(a, b, c, v[t[0]], v[t[1]], v[t[2]], k), 0);
   }
   low_ = built_.low;
-  sortAlongCurve();
   grid_.build(centroids_, {}, table_->support_m() + largestRadius_m_);
   sortPieces();
-}
-
-// Eight pieces are integrated at once, so eight that follow each other should lie together: Morton
-// order, which the grid keeps within its cells.
-void WallField::sortAlongCurve() {
-  const double step = table_->support_m() / 8;
-  std::vector<std::pair<std::uint64_t, int>> keys(pieces_.size());
-  for (std::size_t k = 0; k < pieces_.size(); ++k) {
-    std::uint64_t key = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double cell = std::clamp((centroids_[k][a] - low_[a]) / step + 64, 0.0, 65535.0);
-      key |= spread(static_cast<std::uint64_t>(cell)) << a;
-    }
-    keys[k] = {key, static_cast<int>(k)};
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<Piece> sorted;
-  sorted.reserve(pieces_.size());
-  for (const auto& [key, k] : keys) sorted.push_back(pieces_[k]);
-  pieces_.swap(sorted);
-  for (std::size_t k = 0; k < pieces_.size(); ++k) centroids_[k] = pieces_[k].centroid;
 }
 
 void WallField::sortPieces() {

@@ -86,7 +86,6 @@ class WallField {
   bool sameWalls(std::span<const Triangle> triangles, std::span<const Vec3> positions,
                  std::span<const Vec3> velocities, const Vec3& low, const Vec3& high,
                  std::span<const std::uint8_t> skip);
-  void sortAlongCurve();
   void sortPieces();
 
   const KernelTable* table_;

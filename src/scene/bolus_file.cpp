@@ -65,9 +65,6 @@ bolus::Fluid readFluid(const JsonNode& node) {
       fluid.index = node.number("index", kLowestIndex, kHighestIndex);
       break;
   }
-  fluid.surfaceTension_Nm = node.number("surface_tension_Nm", 0, 1, 0);
-  if (fluid.surfaceTension_Nm > 0)
-    fluid.contactAngle_deg = node.number("contact_angle_deg", 0, 180, fluid.contactAngle_deg);
   fluid.minViscosity_Pas =
       node.number("minViscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.minViscosity_Pas);
   fluid.maxViscosity_Pas =

@@ -37,10 +37,6 @@ double solveRising(F f, double low, double high) {
   return (low + high) / 2;
 }
 
-double capRadius_m(double volume, double angle) {
-  const double c = std::cos(angle);
-  return std::cbrt(3 * volume / (kPi * (2 + c) * (1 - c) * (1 - c)));
-}
 }  // namespace
 
 double couetteStart_ms(double y, double t, double L, double wall, double nu) {
@@ -136,16 +132,4 @@ double huppertRound_m(double volume, double t, double g, double nu) {
   return 0.894 * std::pow(g * volume * volume * volume * t / (3 * nu), 0.125);
 }
 
-double capCentre_m(double volume, double angle) {
-  // Mean height of a cap of a sphere of radius R cut at height R cos(angle) below... its base is at
-  // z = 0 and its sphere's centre at -R cos(angle).
-  const double R = capRadius_m(volume, angle), c = std::cos(angle), h = R * (1 - c);
-  // integral of z (R2 - (z + R c)2) dz over 0..h, times pi / volume
-  const double inner =
-      (R * R - R * R * c * c) * h * h / 2 - 2 * R * c * h * h * h / 3 - h * h * h * h / 4;
-  return kPi * inner / volume;
-}
-double capAngle_rad(double volume, double centre) {
-  return solveRising([&](double a) { return capCentre_m(volume, a) - centre; }, 0.01, kPi - 1e-6);
-}
 }  // namespace swallowclip::verify

@@ -29,7 +29,4 @@ double shapiroTube(double occlusion);
 double huppertPlane_m(double area_m2, double t, double g_ms2, double nu);
 double huppertRound_m(double volume_m3, double t, double g_ms2, double nu);
 
-/// Contact angle (rad) of a spherical cap of given volume whose centre of mass is this high.
-double capAngle_rad(double volume_m3, double centre_m);
-double capCentre_m(double volume_m3, double angle_rad);
 }  // namespace swallowclip::verify

@@ -197,12 +197,6 @@ const std::vector<Row>& rows() {
        }},
       {"plug-half-width", kMm,
        [](const Snapshot& s, const QuantityDef&) { return plugHalfWidth(s); }},
-      {"cap-angle",
-       {"deg", 180 / kPi},
-       [](const Snapshot& s, const QuantityDef& q) {
-         const double volume = s.particleVolume_m3 * static_cast<double>(s.positions.size());
-         return capAngle_rad(volume, mean(s, q, [&](std::size_t i) { return s.positions[i].z(); }));
-       }},
   };
   return table;
 }

@@ -86,11 +86,6 @@ constexpr Need kSidePiston{[](const CaseDef& d) {
                                     d.domain.shape == Shape::box && d.gravity_ms2.z() < 0;
                            },
                            "a piston along x or y, and gravity along -z"};
-constexpr Need kSphere{
-    [](const CaseDef& d) { return d.fill.size() == 1 && d.fill[0].kind == FillKind::sphere; },
-    "one sphere of fluid"};
-constexpr Need kTension{[](const CaseDef& d) { return d.fluid.surfaceTension_Nm > 0; },
-                        "surface_tension_Nm above 0"};
 constexpr Need kYield{[](const CaseDef& d) { return d.fluid.yield_Pa > 0; }, "yield_Pa above 0"};
 
 struct Row {
@@ -298,16 +293,6 @@ const std::vector<Row>& rows() {
              s.def.domain.shape == Shape::tube ? s.def.domain.radius_m : s.size().z() / 2;
          return H * std::min(1.0, s.fluid().yield_Pa / s.stress());
        }},
-      {"laplace-pressure",
-       false,
-       {kTension, kSphere},
-       [](const S& s, const Probe&) {
-         return 2 * s.fluid().surfaceTension_Nm / s.def.fill[0].radius_m;
-       }},
-      {"contact-angle",
-       false,
-       {kTension},
-       [](const S& s, const Probe&) { return s.fluid().contactAngle_deg * kPi / 180; }},
   };
   return table;
 }

@@ -99,6 +99,10 @@ TEST(RandomMotions, NothingLeavesAndNothingIsLost) {
         break;
       }
     }
+    if (std::getenv("SWALLOWCLIP_TEST_REPORT"))
+      fmt::print(stderr, "{}: {} steps, {:.2f} m/s, peak {:.2f}, gap {:.2f} mm, {:.3f} Pa.s\n", k,
+                 s.stats().steps, s.stats().maxSpeed_ms, s.stats().maxDensityError, d.gap_m * 1e3,
+                 d.viscosity_Pas);
     for (const Vec3& x : s.particles().positions) ASSERT_TRUE(x.allFinite());
     worst = std::max(worst, s.stats().maxSpeed_ms);
     clamps += s.stats().clamped;

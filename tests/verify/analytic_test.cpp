@@ -129,12 +129,3 @@ TEST(Analytic, GravityCurrentHoldsItsVolume) {
   EXPECT_NEAR(sum, volume, 5e-3 * volume);
 }
 
-TEST(Analytic, CapAngleIsFoundFromItsCentreOfMass) {
-  const double volume = 4e-8;
-  for (double deg : {20.0, 60.0, 90.0, 140.0}) {
-    const double angle = deg * kPi / 180;
-    EXPECT_NEAR(capAngle_rad(volume, capCentre_m(volume, angle)), angle, 1e-9);
-  }
-  const double R = std::cbrt(3 * volume / (2 * kPi));  // half a ball: 3/8 of its radius
-  EXPECT_NEAR(capCentre_m(volume, kPi / 2), 3 * R / 8, 1e-12);
-}
