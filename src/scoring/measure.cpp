@@ -79,7 +79,11 @@ void judgeLabel(Metrics& m) {
                                 *score->second, m.reasons[m.component]);
   } else {
     m.labelConfirmed = !m.ambiguous[m.component];
-    m.labelReason = m.ambiguous[m.component] ? "as intended, but too near a cut" : "as intended";
+    m.labelReason = "as intended";
+    if (const auto cut = m.nearestCuts.find(m.component); cut != m.nearestCuts.end())
+      m.labelReason +=
+          fmt::format(", {:.0f} % from the cut {}", 100 * m.margins[m.component], cut->second);
+    if (!*m.labelConfirmed) m.labelReason += ": too near to call";
   }
 }
 
