@@ -74,7 +74,11 @@ Result<void> checkNames(const std::vector<std::string>& words) {
 
 /// What the choices mean together: component and scores, or a swallow file.
 Result<void> checkTogether(unsigned command, RunOptions& options) {
-  if (!(command & (kRender | kSimulate))) return {};
+  if (!(command & (kRender | kSimulate | kSweep))) return {};
+  if (command == kSweep && !options.range)
+    return usageError("--set", "sweep needs a range", "Give track.key=from:to:step.");
+  if (command != kSweep && options.range)
+    return usageError("--set", "a range of values", "Give one value, or use sweep.");
   if (options.component == 0 && options.swallow.empty())
     return usageError("--component", "no component chosen",
                       "Give --component and --score, or --swallow FILE.");
@@ -94,8 +98,10 @@ Result<void> checkTogether(unsigned command, RunOptions& options) {
     return usageError("--score",
                       fmt::format("component {} has no score {}", c.number, options.scores.back()),
                       fmt::format("Its scores are 0 to {}.", c.highestScore()));
-  if (command == kSimulate && options.scores.size() > 1)
-    return usageError("--score", "simulate writes one history, so it takes one score",
+  if (command != kRender && options.scores.size() > 1)
+    return usageError("--score",
+                      fmt::format("{} runs one swallow, so it takes one score",
+                                  command == kSweep ? "sweep" : "simulate"),
                       "Choose one, or use render.");
   if (!options.swallow.empty() && options.scores.size() > 1)
     return usageError("--score", "one swallow file shows one score", "Choose one.");

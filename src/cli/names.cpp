@@ -61,7 +61,7 @@ Result<void> checkReadable(const char* place, const fs::path& path, bool folderT
 }  // namespace
 
 Result<void> checkNames(CommandBit command, const RunOptions& options) {
-  if (command & (kRender | kSimulate)) {
+  if (command & (kRender | kSimulate | kSweep)) {
     if (auto found = checkScene(options); !found) return found;
     if (options.hasBolus())
       if (auto bolus = scene::loadBolus(options.scenesFolder(), options.bolus); !bolus)

@@ -100,15 +100,39 @@ Result<void> applyViews(const Words& words, RunOptions& options) {
   return {};
 }
 
+/// from:to:step, for sweep.
+Result<pipeline::TrackRange> range(const std::string& word, std::string track, std::string key,
+                                   const Words& parts) {
+  pipeline::TrackRange r{std::move(track), std::move(key)};
+  double* const numbers[] = {&r.from, &r.to, &r.step};
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    if (auto ok = store(number("--set", parts[k], -1e9, 1e9), *numbers[k]); !ok)
+      return std::unexpected(ok.error());
+  constexpr double kMostSteps = 200;
+  if (parts.size() != 3 || !(r.step > 0) || !(r.to > r.from) ||
+      (r.to - r.from) / r.step > kMostSteps)
+    return usageError("--set", fmt::format("\"{}\" is no range", word),
+                      "Give track.key=from:to:step, rising, of at most 200 steps.");
+  return r;
+}
+
 Result<void> applySets(const Words& words, RunOptions& options) {
   for (const std::string& word : words) {
     const std::size_t equals = word.find('='), dot = word.rfind('.', equals);
     if (equals == std::string::npos || dot == std::string::npos || dot == 0 || dot + 1 >= equals)
       return usageError("--set", fmt::format("\"{}\" is not of the form track.key=value", word),
-                        "For example --set tongue.delay_s=3.");
-    const auto value = number("--set", word.substr(equals + 1), -1e9, 1e9);
+                        "For example --set larynx.delay_s=0.3.");
+    const std::string track = word.substr(0, dot), key = word.substr(dot + 1, equals - dot - 1);
+    const Words parts = splitAt(word.substr(equals + 1), ':');
+    if (parts.size() > 1) {
+      if (options.range)
+        return usageError("--set", "a sweep runs over one range", "Give the others one value.");
+      if (auto ok = store(range(word, track, key, parts), options.range); !ok) return ok;
+      continue;
+    }
+    const auto value = number("--set", parts[0], -1e9, 1e9);
     if (!value) return std::unexpected(value.error());
-    options.sets.push_back({word.substr(0, dot), word.substr(dot + 1, equals - dot - 1), *value});
+    options.sets.push_back({track, key, *value});
   }
   return {};
 }
@@ -163,11 +187,12 @@ Result<void> applyFiles(const Words& words, RunOptions& options) {
   return {};
 }
 
-constexpr unsigned kSwallow = kRender | kSimulate, kPictures = kRender | kDraw;
+constexpr unsigned kSwallow = kRender | kSimulate | kSweep, kPictures = kRender | kDraw;
 
 constexpr CommandRow kCommands[] = {
     {kRender, "render", "Simulate a swallow, measure it and film it, one clip per view"},
     {kSimulate, "simulate", "Simulate a swallow into a history file"},
+    {kSweep, "sweep", "Run a swallow over a range of one number and chart what changes"},
     {kMeasure, "measure", "Measure events, quantities and scores of a history"},
     {kDraw, "draw", "Film a history again, without simulating"},
     {kExport, "export", "Write a history as files for other programs"},
@@ -190,7 +215,11 @@ constexpr OptionRow kOptions[] = {
      applyText<&RunOptions::scene>},
     {"--swallow", "FILE", "Swallow file instead of the one of component and score", kSwallow, 0,
      false, applyText<&RunOptions::swallow>},
-    {"--set", "TRACK.KEY=VALUE", "Replace numbers of the swallow", kSwallow, 0, true, applySets},
+    {"--set", "TRACK.KEY=VALUE",
+     "Replace numbers of the swallow; for sweep one of them as FROM:TO:STEP", kSwallow, kSweep,
+     true, applySets},
+    {"--compare", "RUN.h5", "History of the unchanged swallow: print what --set changes",
+     kRender | kSimulate, 0, false, applyText<&RunOptions::compare>},
     {"--preset", "NAME|FILE", "Look of the pictures (default training)", kPictures, 0, false,
      applyText<&RunOptions::preset>},
     {"--spacing-mm", "MM", "Particle spacing, 0.5 to 4 (default 2)", kSwallow, 0, false,
@@ -199,11 +228,13 @@ constexpr OptionRow kOptions[] = {
     {"--map", "FILE", "Which mesh is which structure", kImport, kImport, false,
      applyText<&RunOptions::map>},
     {"--format", "csv|obj|vtp", "File format (default csv)", kExport, 0, false, applyFormat},
+    {"--plot", "FILE.svg|.png", "Also draw the swallow sheet", kMeasure, 0, false,
+     applyText<&RunOptions::plot>},
     {"--json", "", "Print JSON instead of a table", kMeasure, 0, false, applyJson},
     {"--history", "FILE.h5", "History file to write", kSimulate, kSimulate, false,
      applyText<&RunOptions::history>},
-    {"--out", "DIR", "Folder for results (default output)", kPictures | kExport | kImport, kImport,
-     false, applyText<&RunOptions::out>},
+    {"--out", "DIR", "Folder for results (default output)", kPictures | kExport | kImport | kSweep,
+     kImport, false, applyText<&RunOptions::out>},
     {"--jobs", "N", "Threads to use (default: all processors)", kSwallow | kDraw | kVerify, 0,
      false, applyJobs},
     {"--checkpoint", "FILE",

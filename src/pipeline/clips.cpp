@@ -77,8 +77,11 @@ std::string liveValue(const frame::History& h, const scoring::Metrics& m, int fr
 }  // namespace
 
 std::string clipStem(const frame::Meta& m) {
+  // What --set has changed never takes the name of the swallow as it was published.
+  const auto plus = m.swallow.find('+');
+  const std::string settings = plus == std::string::npos ? "" : m.swallow.substr(plus);
   if (m.component > 0 && m.score >= 0)
-    return fmt::format("c{:02}-s{}-{}", m.component, m.score, m.bolus);
+    return fmt::format("c{:02}-s{}-{}{}", m.component, m.score, m.bolus, settings);
   return fmt::format("{}-{}", m.swallow, m.bolus);
 }
 

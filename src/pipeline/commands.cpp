@@ -5,11 +5,13 @@
 #include "frame/exporter.h"
 #include "frame/history_file.h"
 #include "pipeline/clips.h"
+#include "pipeline/compare.h"
 #include "pipeline/components.h"
 #include "pipeline/confirm.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/simulation.h"
+#include "pipeline/swallow_sheet.h"
 #include "scene/bolus_file.h"
 #include "scene/file_kind.h"
 #include "scene/mapping_file.h"
@@ -64,6 +66,7 @@ Result<void> render(const RunOptions& o, Progress& progress) {
     const double start = now_s();
     auto history = simulateSwallow(o, score, preset->fps, progress);
     if (!history) return std::unexpected(history.error());
+    if (auto told = reportChanges(o, *history, progress); !told) return told;
     if (auto done = publish(o, *preset, *history, now_s() - start, progress); !done) return done;
   }
   return {};
@@ -79,7 +82,8 @@ Result<void> simulate(const RunOptions& o, Progress& progress) {
   progress.stage("simulating");
   auto history = simulateSwallow(o, scores.front(), preset->fps, progress);
   if (!history) return std::unexpected(history.error());
-  return frame::saveHistory(*history, o.history);
+  if (auto saved = frame::saveHistory(*history, o.history); !saved) return saved;
+  return reportChanges(o, *history, progress);
 }
 
 Result<void> measure(const RunOptions& o, Progress& progress) {
@@ -87,6 +91,9 @@ Result<void> measure(const RunOptions& o, Progress& progress) {
   if (!history) return std::unexpected(history.error());
   auto metrics = measureHistory(o.scenesFolder(), *history);
   if (!metrics) return std::unexpected(metrics.error());
+  if (!o.plot.empty())
+    if (auto drawn = plot::writeFigure(swallowSheet(*history, *metrics), o.plot); !drawn)
+      return drawn;
   progress.print(o.json ? scene::sideFileText(*history, *metrics) : scoring::formatTable(*metrics));
   return {};
 }

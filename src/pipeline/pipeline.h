@@ -13,6 +13,8 @@ Result<void> simulate(const RunOptions& options, Progress& progress);
 Result<void> measure(const RunOptions& options, Progress& progress);
 Result<void> draw(const RunOptions& options, Progress& progress);
 Result<void> exportHistory(const RunOptions& options, Progress& progress);
+/// The same swallow over a range of one number: a table and a plot of what changes.
+Result<void> sweep(const RunOptions& options, Progress& progress);
 Result<void> importMeshes(const RunOptions& options, Progress& progress);
 Result<void> list(const RunOptions& options, Progress& progress);
 Result<void> check(const RunOptions& options, Progress& progress);

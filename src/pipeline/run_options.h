@@ -3,6 +3,7 @@
 // option left out; which fields matter depends on the command (src/cli/option_table.cpp).
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,14 @@ namespace swallowclip::pipeline {
 struct TrackSetting {
   std::string track, key;
   double value = 0;
+};
+
+/// --set track.key=from:to:step of `sweep`.
+struct TrackRange {
+  std::string track, key;
+  double from = 0, to = 0, step = 0;  ///< all of them, from and to included
+
+  std::vector<double> values() const;
 };
 
 /// `verify` has its own defaults: what is left out stays as the case file says.
@@ -31,6 +40,8 @@ struct RunOptions {
   std::string scene = "adult";    ///< folder in scenes/, or a path
   std::filesystem::path swallow;  ///< empty: the file of component and score
   std::vector<TrackSetting> sets;
+  std::optional<TrackRange> range;  ///< sweep
+  std::filesystem::path compare;    ///< history of the unchanged swallow, for --set
   std::string preset = "training";  ///< name in render_presets/, or a .json file
   double spacing_mm = 2;            ///< particle spacing; 2 mm = 621 particles in 5 mL
   std::string solver = "dfsph";     ///< dfsph or wcsph
@@ -40,6 +51,7 @@ struct RunOptions {
   std::filesystem::path checkpoint;  ///< simulate: kept while it runs, gone on from when it exists
   std::filesystem::path history;     ///< run.h5: written by simulate, read by measure, draw, export
   std::string format = "csv";        ///< export: csv, obj or vtp
+  std::filesystem::path plot;        ///< measure: a page of charts, .svg or .png
   bool json = false;                 ///< measure: JSON instead of a table
   std::filesystem::path input;       ///< import: folder or file of meshes
   std::filesystem::path map;         ///< import: mapping file

@@ -203,6 +203,8 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
   frame::Meta& m = h.meta;
   m.scene = o.scene;
   m.swallow = swallow->name;
+  for (const TrackSetting& set : o.sets)
+    m.swallow += fmt::format("+{}.{}={:g}", set.track, set.key, set.value);
   m.bolus = "none";
   m.solver = o.hasBolus() ? o.solver : "none";
   m.program = std::string("swallowclip ") + SWALLOWCLIP_VERSION;

@@ -30,6 +30,15 @@ const std::vector<TrackKey>& trackKeys() {
   return keys;
 }
 
+/// What people name together when they speak of timing.
+struct Group {
+  std::string name;
+  std::vector<std::string> tracks;
+};
+const std::vector<Group> kGroups{
+    {"larynx", {"larynx_superior", "larynx_anterior", "arytenoid", "epiglottis", "vocal_folds"}},
+    {"hyoid", {"hyoid_superior", "hyoid_anterior"}}};
+
 bool ordered(const Track& t) {
   return t.onset_s <= t.peak_s && t.peak_s <= t.hold_s && t.hold_s <= t.offset_s;
 }
@@ -123,8 +132,12 @@ Result<void> applySet(SwallowDef& swallow, const std::string& assignment) {
                       "For example --set velum.onset_s=0.4");
   const std::string track = assignment.substr(0, dot),
                     key = assignment.substr(dot + 1, equal - dot - 1);
-  std::vector<std::string> tracks, keys;
+  std::vector<std::string> tracks, keys, members{track};
   for (const auto& k : kinematics::trackKinds()) tracks.push_back(k.name);
+  for (const Group& g : kGroups) {
+    tracks.push_back(g.name);
+    if (track == g.name) members = g.tracks;
+  }
   for (const auto& k : trackKeys()) keys.push_back(k.name);
   const auto unknown = [&](const std::string& what, const std::string& word,
                            const std::vector<std::string>& known) {
@@ -145,12 +158,24 @@ Result<void> applySet(SwallowDef& swallow, const std::string& assignment) {
     return usageError("--set " + assignment,
                       fmt::format("the value must be a number in [{}, {}]", it->min, it->max),
                       "Correct it.");
-  Track& t = swallow.tracks[track];
-  t.*(it->field) = value;
-  if (!ordered(t))
+  if (members.size() > 1 && it->field != &Track::amplitude && it->field != &Track::delay_s &&
+      it->field != &Track::speed)
     return usageError("--set " + assignment,
-                      "onset_s <= peak_s <= hold_s <= offset_s no longer holds",
-                      "Move the other times too.");
+                      fmt::format("'{}' moves several tracks ({}), each with times of its own",
+                                  track, fmt::join(members, ", ")),
+                      "Give its amplitude, delay_s or speed, or name one of the tracks.");
+  for (const std::string& name : members) {
+    Track& t = swallow.tracks[name];
+    // A motion that begins at another time is the same motion at another time.
+    if (it->field == &Track::onset_s)
+      for (double Track::*time : {&Track::peak_s, &Track::hold_s, &Track::offset_s})
+        t.*time += value - t.onset_s;
+    t.*(it->field) = value;
+    if (!ordered(t))
+      return usageError("--set " + assignment,
+                        "onset_s <= peak_s <= hold_s <= offset_s no longer holds",
+                        "Move the other times too.");
+  }
   return {};
 }
 }  // namespace swallowclip::scene

@@ -13,5 +13,7 @@ namespace swallowclip::scene {
 Result<kinematics::SwallowDef> loadSwallow(const std::filesystem::path& path);
 
 /// Applies "track.key=value" (keys onset_s, peak_s, hold_s, offset_s, amplitude, delay_s, speed).
+/// "larynx" and "hyoid" stand for all tracks of theirs (amplitude, delay_s, speed); another onset_s
+/// moves the whole track.
 Result<void> applySet(kinematics::SwallowDef& swallow, const std::string& assignment);
 }  // namespace swallowclip::scene

@@ -73,14 +73,15 @@ std::vector<double> bolusHead_m(const frame::BolusTrack& bolus, const ScoringRul
   return out;
 }
 
-std::vector<double> bolusCentroid_m(const frame::BolusTrack& bolus) {
+std::vector<double> bolusCentroid_m(const frame::BolusTrack& bolus, const ScoringRules& rules) {
   std::vector<double> out;
   for (std::size_t f = 0; f < bolus.s_m.size(); ++f) {
     double sum = 0;
     int n = 0;
     for (std::size_t k = 0; k < bolus.s_m[f].size(); ++k)
       if (bolus.state[f][k] != ParticleState::swallowed) sum += bolus.s_m[f][k], ++n;
-    out.push_back(n ? sum / n : kNaN);
+    const auto least = rules.headShare * static_cast<double>(bolus.s_m[f].size());
+    out.push_back(n > 0 && n >= least ? sum / n : kNaN);
   }
   return out;
 }

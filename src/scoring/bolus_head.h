@@ -17,8 +17,8 @@ ComponentReport measureComponent2(const frame::History& history, const MeasuredE
 
 /// [frame] s of the bolus head: beyond it lies the head's share of V0; NaN without bolus.
 std::vector<double> bolusHead_m(const frame::BolusTrack& bolus, const ScoringRules& rules);
-/// [frame] mean s of what is not swallowed; NaN once all is.
-std::vector<double> bolusCentroid_m(const frame::BolusTrack& bolus);
+/// [frame] mean s of what is not swallowed; NaN once that is less than makes a head.
+std::vector<double> bolusCentroid_m(const frame::BolusTrack& bolus, const ScoringRules& rules);
 
 /// `head_m` empty: no burst in the time waited for.
 std::optional<int> scoreComponent6(std::optional<double> head_m, const ScoringRules& rules);

@@ -63,6 +63,11 @@ std::vector<Quantity> measureClearance(const frame::History& history, const Scor
   out.push_back(t50);
 
   const int last = history.frames() - 1;
+  Quantity gone{
+      "swallowed", {}, "share", -1, "share of V0 past the lower end of the UES at the end",
+      kNoBolus};
+  if (bolus) set(gone, shareBeyond(history.bolus, rules.uesEnd_m)[last], last);
+  out.push_back(gone);
   for (const RegionName& r : kResidueRegions) {
     Quantity q{std::string("left_in_") + r.name,
                {},

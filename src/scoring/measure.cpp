@@ -103,7 +103,7 @@ std::vector<Series> bolusSeries(const History& h, const ScoringRules& rules) {
     mouth.values.push_back(oral / all), pharynx.values.push_back(throat / all);
   }
   return {mouth, pharynx, inMillimetres("bolus_head", bolusHead_m(h.bolus, rules)),
-          inMillimetres("bolus_centroid", bolusCentroid_m(h.bolus))};
+          inMillimetres("bolus_centroid", bolusCentroid_m(h.bolus, rules))};
 }
 
 void add(int component, ComponentReport report, Metrics& m) {

@@ -106,13 +106,27 @@ TEST(CommandLine, WhatDoesNotFitTogether) {
 TEST(CommandLine, BadValues) {
   for (const char* bad :
        {"render --component 4 --score 1 --spacing-mm nan",
-        "render --component 4 --score 1 --spacing-mm 0", "render --component 4 --score 1 --jobs -1",
+        "render --component 4 --score 1 --spacing-mm 0",
+        "render --component 4 --score 1 --jobs -1",
         "render --component 4 --score 1 --jobs 99999999999999",
         "render --component 4 --score 1 --set tongue=1",
+        "render --component 4 --score 1 --set larynx.delay_s=0:0.6:0.1",
+        "sweep --component 4 --score 1 --set larynx.delay_s=0.1",
+        "sweep --component 4 --score 1 --set larynx.delay_s=0:0.6:0",
+        "sweep --component 4 --score 1 --set larynx.delay_s=0.6:0:0.1",
+        "sweep --component 4 --score 1 --set larynx.delay_s=0:1:0.1 --set hyoid.speed=1:2:1",
         "render --component 4 --score 1 --set tongue.x=1e999",
-        "render --component 4 --score 1 --set .x=1", "render --component 4 --score 1 --score 2",
-        "render --component 4 --score 1 --bolus=", "measure", "export r.h5 --format glb",
-        "import x --map m", "list", "check", "", "--nonsense", "measure a.h5 b.h5"})
+        "render --component 4 --score 1 --set .x=1",
+        "render --component 4 --score 1 --score 2",
+        "render --component 4 --score 1 --bolus=",
+        "measure",
+        "export r.h5 --format glb",
+        "import x --map m",
+        "list",
+        "check",
+        "",
+        "--nonsense",
+        "measure a.h5 b.h5"})
     EXPECT_NE(problem(bad), "accepted") << bad;
 }
 

@@ -226,7 +226,7 @@ TEST(BolusHead, HeadTailAndInitiation) {
   f.particle_m = [](double s0, double t) { return s0 + 0.035 * t; };
   const auto h = makeHistory(f);
   const auto head = bolusHead_m(h.bolus, testRules());
-  const auto centre = bolusCentroid_m(h.bolus);
+  const auto centre = bolusCentroid_m(h.bolus, testRules());
   for (int k = 0; k < h.frames(); ++k) {
     // The 4th of 200 particles: 0.025 * 196 / 199 from the rear.
     EXPECT_NEAR(head[k], 0.020 + 0.025 * 196 / 199 + 0.035 * h.time_s[k], 1e-6);
