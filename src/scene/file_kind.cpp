@@ -4,6 +4,7 @@
 #include "scene/bolus_file.h"
 #include "scene/json_reader.h"
 #include "scene/preset_file.h"
+#include "scene/rules_file.h"
 
 namespace swallowclip::scene {
 
@@ -15,6 +16,7 @@ Result<FileKind> fileKind(const std::filesystem::path& path) {
   if (root.has("boluses")) return FileKind::bolusList;
   if (root.has("rheology")) return FileKind::bolus;
   if (root.has("views")) return FileKind::preset;
+  if (root.has("residue_rule")) return FileKind::scoringRules;
   return FileKind::other;
 }
 
@@ -30,6 +32,8 @@ Result<void> checkFile(const std::filesystem::path& path, FileKind kind) {
       return outcome(loadBolusList(path));
     case FileKind::bolus:
       return outcome(loadBolusFile(path));
+    case FileKind::scoringRules:
+      return outcome(loadScoringRules(path));
     case FileKind::other:
       break;
   }

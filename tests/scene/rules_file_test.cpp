@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/vec.h"
+#include "scene/file_kind.h"
 #include "scene/swallow_file.h"
 #include "scratch.h"
 
@@ -54,6 +55,11 @@ TEST_F(RulesFile, MistakesAreNamedWithTheirPlace) {
 TEST_F(RulesFile, CutsOutOfOrderAreRefused) {
   expectError(loadWith("\"trace_ratio\": 0.15", "\"trace_ratio\": 0.6"),
               "sealed_ratio < trace_ratio < narrow_ratio does not hold");
+}
+
+TEST_F(RulesFile, IsToldFromOtherFilesByItsKeys) {
+  EXPECT_EQ(fileKind(scoringRulesFile(kScenes)), FileKind::scoringRules);
+  EXPECT_TRUE(checkFile(scoringRulesFile(kScenes), FileKind::scoringRules));
 }
 
 class Set : public testing::Test {
