@@ -63,6 +63,22 @@ void readTracks(const JsonNode& j, SwallowDef& d) {
   }
 }
 
+void readHollows(const JsonNode& j, SwallowDef& d) {
+  if (!j.has("hollows")) return;
+  d.hollows.clear();
+  for (const JsonNode& h : j.array("hollows")) {
+    kinematics::Hollow one;
+    one.start_m = h.number("start_mm", 0, 80) * kMetrePerMm;
+    one.end_m = h.number("end_mm", 0, 80) * kMetrePerMm;
+    one.centre_m = h.number("centre_mm", -18, 18, 0) * kMetrePerMm;
+    one.halfWidth_m = h.number("half_width_mm", 1, 18) * kMetrePerMm;
+    one.depth_m = h.number("depth_mm", 0, 15) * kMetrePerMm;
+    if (h.exists() && one.end_m - one.start_m < 3e-3)
+      h.fail("'end_mm' must be at least 3 mm beyond 'start_mm'", "s counts from the incisors.");
+    d.hollows.push_back(one);
+  }
+}
+
 Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
   auto file = JsonFile::load(path);
   if (!file) return std::unexpected(file.error());
@@ -101,6 +117,7 @@ Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
   d.rockCycles = j.integer("rock_cycles", 0, 20, static_cast<int>(d.rockCycles));
   d.rockStart_s = j.number("rock_start_s", 0, kTime, d.rockStart_s);
   readTracks(j, d);
+  readHollows(j, d);
   const double delay = j.number("later_delay_s", -2, kTime, 0);
   if (delay != 0)
     for (auto& [name, track] : d.tracks)
