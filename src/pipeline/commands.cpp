@@ -13,6 +13,7 @@
 #include "scene/file_kind.h"
 #include "scene/mapping_file.h"
 #include "scene/preset_file.h"
+#include "scene/rules_file.h"
 #include "scene/side_file.h"
 #include "scene/swallow_file.h"
 #include "scoring/measure.h"
@@ -33,9 +34,15 @@ std::string verdict(const frame::Meta& m, const scoring::Metrics& metrics) {
                                  : "NOT confirmed: " + metrics.labelReason;
 }
 
+Result<scoring::Metrics> measureHistory(const RunOptions& o, const frame::History& h) {
+  auto rules = scene::loadScoringRules(scene::scoringRulesFile(o.scenesFolder()));
+  if (!rules) return std::unexpected(rules.error());
+  return scoring::measure(h, *rules);
+}
+
 Result<void> publish(const RunOptions& o, const render::RenderPreset& preset,
                      const frame::History& h, double simulation_s, Progress& progress) {
-  auto metrics = scoring::measure(h);
+  auto metrics = measureHistory(o, h);
   if (!metrics) return std::unexpected(metrics.error());
   const std::filesystem::path folder = clipFolder(o, h.meta);
   if (auto ready = prepareFolder(folder); !ready) return ready;
@@ -90,7 +97,7 @@ Result<void> simulate(const RunOptions& o, Progress& progress) {
 Result<void> measure(const RunOptions& o, Progress& progress) {
   auto history = frame::loadHistory(o.history);
   if (!history) return std::unexpected(history.error());
-  auto metrics = scoring::measure(*history);
+  auto metrics = measureHistory(o, *history);
   if (!metrics) return std::unexpected(metrics.error());
   progress.print(o.json ? scene::sideFileText(*history, *metrics) : scoring::formatTable(*metrics));
   return {};

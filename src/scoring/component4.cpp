@@ -288,34 +288,51 @@ int countReversals(std::span<const double> time_s, std::span<const double> x, in
   return turns;
 }
 
+std::optional<int> scoreComponent4(const Component4Measures& m, const ScoringRules& rules) {
+  constexpr double kRounding_s = 1e-6, kBetweenCounts = 0.5;
+  if (!m.travel_m) return std::nullopt;
+  if (*m.travel_m < rules.minimalTravel_m)
+    return m.waited_s < rules.minimalWait_s - kRounding_s ? std::nullopt : std::optional(4);
+  if (!m.reversals) return std::nullopt;
+  if (*m.reversals > rules.repetitiveReversals - kBetweenCounts) return 3;
+  if (!m.front_ms) return std::nullopt;
+  if (*m.front_ms < rules.slow_ms) return 2;
+  if (!m.delay_s) return std::nullopt;
+  return *m.delay_s > rules.delayed_s ? 1 : 0;
+}
+
 Decision decideComponent4(const Component4Measures& m, const ScoringRules& rules) {
-  const double above = 1 + rules.ambiguousMargin, below = 1 - rules.ambiguousMargin;
-  if (!m.travel_m) return {{}, false, "the airway-skin has no tongue midline"};
-  const double travel_mm = *m.travel_m * 1e3;
-  if (*m.travel_m < rules.minimalTravel_m) {
-    if (m.waited_s < rules.minimalWait_s - 1e-6)
-      return {{},
-              false,
-              fmt::format("travel is {:.1f} mm, but the history ends {:.2f} s after the last cue; "
-                          "score 4 needs {:g} s",
-                          travel_mm, m.waited_s, rules.minimalWait_s)};
-    return {4, *m.travel_m > below * rules.minimalTravel_m,
-            fmt::format("contact front and dorsal high point travel {:.1f} mm", travel_mm)};
+  Decision d = decide([&](const ScoringRules& r) { return scoreComponent4(m, r); }, rules, "");
+  const bool moves = m.travel_m && *m.travel_m >= rules.minimalTravel_m;
+  const std::string travel =
+      m.travel_m
+          ? fmt::format("contact front and dorsal high point travel {:.1f} mm", *m.travel_m * 1e3)
+          : "the airway-skin has no tongue midline";
+  if (!moves) {
+    d.reason = travel;
+    if (m.travel_m && !d.score)
+      d.reason +=
+          fmt::format(", but the history ends {:.2f} s after the last cue; score 4 needs {:g} s",
+                      m.waited_s, rules.minimalWait_s);
+    return d;
   }
-  bool ambiguous = *m.travel_m < above * rules.minimalTravel_m;
-  if (!m.reversals) return {{}, ambiguous, "reversals could not be counted"};
-  ambiguous |= m.reversalsUnsure;
-  if (*m.reversals >= rules.repetitiveReversals)
-    return {3, ambiguous, fmt::format("{} reversals", *m.reversals)};
-  if (!m.front_ms) return {{}, ambiguous, "the contact front never advances by 10 mm"};
-  const std::string speed = fmt::format("front speed {:.0f} mm/s", *m.front_ms * 1e3);
-  if (*m.front_ms < rules.slow_ms)
-    return {2, ambiguous || *m.front_ms > below * rules.slow_ms, speed};
-  ambiguous |= *m.front_ms < rules.brisk_ms;
-  if (!m.delay_s) return {{}, ambiguous, "no productive tongue onset"};
-  ambiguous |= std::abs(*m.delay_s / rules.delayed_s - 1) < rules.ambiguousMargin;
-  return {*m.delay_s > rules.delayed_s ? 1 : 0, ambiguous,
-          fmt::format("onset {:.2f} s after the cue, {}", *m.delay_s, speed)};
+  if (!m.reversals) {
+    d.reason = "reversals could not be counted";
+    return d;
+  }
+  d.ambiguous |= m.reversalsUnsure;
+  if (d.score == 3) {
+    d.reason = fmt::format("{} reversals", *m.reversals);
+  } else if (!m.front_ms) {
+    d.reason = "the contact front never advances by 10 mm";
+  } else {
+    d.reason = fmt::format("front speed {:.0f} mm/s", *m.front_ms * 1e3);
+    if (d.score == 2) return d;
+    d.ambiguous |= *m.front_ms < rules.brisk_ms;
+    d.reason = m.delay_s ? fmt::format("onset {:.2f} s after the cue, {}", *m.delay_s, d.reason)
+                         : "no productive tongue onset";
+  }
+  return d;
 }
 
 Component4Report measureComponent4(const History& h, const LumenProfile& lumen,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frame/history.h"
+#include "scoring/decision.h"
 #include "scoring/lumen.h"
 #include "scoring/metrics.h"
 #include "scoring/rules.h"
@@ -47,21 +48,15 @@ struct Component4Measures {
   std::optional<double> delay_s;   ///< D_i
 };
 
-struct Decision {
-  std::optional<int> score;
-  bool ambiguous = false;
-  std::string reason;
-};
-
 /// 4, 3, 2, 1, 0 in this order. No score where a measure that it needs is missing.
+std::optional<int> scoreComponent4(const Component4Measures& m, const ScoringRules& rules);
+/// With its reason; also ambiguous between slow and brisk, and where another run length would count
+/// other reversals.
 Decision decideComponent4(const Component4Measures& m, const ScoringRules& rules);
 
-struct Component4Report {
+struct Component4Report : ComponentReport {
   Component4Measures measures;
-  Decision decision;
   MeasuredEvent onset;  ///< tongue_onset
-  std::vector<Quantity> quantities;
-  std::vector<Series> series;
 };
 
 Component4Report measureComponent4(const frame::History& history, const LumenProfile& lumen,

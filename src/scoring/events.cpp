@@ -9,6 +9,7 @@
 
 #include "scoring/clearance.h"
 #include "scoring/series.h"
+#include "scoring/spine.h"
 
 namespace swallowclip::scoring {
 namespace {
@@ -24,12 +25,6 @@ MeasuredEvent found(std::string name, std::string rule, const History& h, std::o
   return e;
 }
 
-const frame::LandmarkTrack* landmark(const History& h, std::string_view name) {
-  for (const auto& l : h.landmarks)
-    if (l.name == name && static_cast<int>(l.positions.size()) == h.frames()) return &l;
-  return nullptr;
-}
-
 std::vector<double> pointSpeed(std::span<const double> time_s, std::span<const Vec3> x) {
   const int n = static_cast<int>(x.size());
   std::vector<double> v(n, 0.0);
@@ -43,7 +38,7 @@ std::vector<double> pointSpeed(std::span<const double> time_s, std::span<const V
 /// Hyoid speed from its landmark, else from its rigid pose; empty when the history has neither.
 std::vector<double> hyoidSpeed(const History& h) {
   std::vector<Vec3> x;
-  if (const auto* body = landmark(h, "hyoid_body_centre")) {
+  if (const auto* body = wholeLandmark(h, "hyoid_body_centre")) {
     for (const Vec3f& p : body->positions) x.push_back(p.cast<double>());
     return pointSpeed(h.time_s, x);
   }
@@ -285,8 +280,9 @@ Closure measureClosure(std::span<const double> gap_m, int rest, const ScoringRul
 }
 
 std::vector<double> vestibuleGap_m(const History& h) {
-  const auto *left = landmark(h, "arytenoid_apex_L"), *right = landmark(h, "arytenoid_apex_R"),
-             *petiole = landmark(h, "epiglottis_petiole");
+  const auto *left = wholeLandmark(h, "arytenoid_apex_L"),
+             *right = wholeLandmark(h, "arytenoid_apex_R"),
+             *petiole = wholeLandmark(h, "epiglottis_petiole");
   std::vector<double> gap;
   if (!left || !right || !petiole) return gap;
   for (int f = 0; f < h.frames(); ++f)
@@ -294,6 +290,25 @@ std::vector<double> vestibuleGap_m(const History& h) {
                       .cast<double>()
                       .norm());
   return gap;
+}
+
+std::vector<double> petioleGap_m(const History& h, const LumenProfile& lumen) {
+  constexpr double kAround_m = 4e-3;  // of the petiole's height; assumed, 3-6 mm
+  const auto* petiole = wholeLandmark(h, "epiglottis_petiole");
+  std::vector<std::size_t> at;
+  const int rest = cueFrame(h);
+  for (std::size_t k = 0; petiole && k < lumen.vestibuleFront.size(); ++k) {
+    const double z = h.skin.positions[rest][lumen.vestibuleFront[k]].z();
+    if (std::abs(z - petiole->positions[rest].z()) <= kAround_m) at.push_back(k);
+  }
+  if (at.empty()) return vestibuleGap_m(h);
+  std::vector<double> out;
+  for (const auto& gaps : lumen.vestibuleGap_m) {
+    double least = gaps[at.front()];
+    for (std::size_t k : at) least = std::min(least, gaps[k]);
+    out.push_back(least);
+  }
+  return out;
 }
 
 EventReport measureEvents(const History& h, const LumenProfile& lumen, const MeasuredEvent& onset,

@@ -40,6 +40,10 @@ Closure measureClosure(std::span<const double> gap_m, int rest, const ScoringRul
 /// apex to epiglottic petiole. Empty when a landmark lacks.
 std::vector<double> vestibuleGap_m(const frame::History& history);
 
+/// [frame] gap between the arytenoids and the epiglottic petiole: least width of the vestibule at
+/// the petiole's height at the cue; without a branch the stand-in above.
+std::vector<double> petioleGap_m(const frame::History& history, const LumenProfile& lumen);
+
 struct EventReport {
   std::vector<MeasuredEvent> events;  ///< tongue_onset, BPM, HYB, LVC, UESO, UESMax, MPC, UESC,
                                       ///< LVCoff, SwRest

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "scoring/sheet_distance.h"
 
 namespace swallowclip::scoring {
 namespace {
@@ -26,56 +27,6 @@ std::vector<Triangle> trianglesAlong(const SkinTrack& skin, const std::vector<in
   return out;
 }
 
-/// Distances to one sheet, frame after frame. Triangles farther than the best found so far are
-/// left out by their bounding balls, and each asker starts from its last answer.
-class SheetDistance {
- public:
-  SheetDistance(std::vector<Triangle> triangles, std::size_t askers)
-      : triangles_(std::move(triangles)), balls_(triangles_.size()), guess_(askers, 0) {}
-
-  void setFrame(std::span<const Vec3f> x) {
-    x_ = x;
-    for (std::size_t k = 0; k < triangles_.size(); ++k) {
-      const Triangle& t = triangles_[k];
-      const Vec3f c = (x[t[0]] + x[t[1]] + x[t[2]]) / 3;
-      float r = 0;
-      for (int v : t) r = std::max(r, (x[v] - c).norm());
-      constexpr double kRounding = 1 + 1e-5;  // float centre and radius
-      balls_[k] = {c.cast<double>(), r * kRounding};
-    }
-  }
-
-  double operator()(std::size_t asker, const Vec3& p) {
-    int& guess = guess_[asker];
-    double best = exact(guess, p);
-    for (int k = 0; k < static_cast<int>(triangles_.size()); ++k) {
-      if (balls_[k].radius + best <= (p - balls_[k].centre).norm()) continue;
-      const double d = exact(k, p);
-      if (d < best) best = d, guess = k;
-    }
-    return best;
-  }
-
- private:
-  struct Ball {
-    Vec3 centre;
-    double radius = 0;
-  };
-
-  double exact(int k, const Vec3& p) const {
-    const Triangle& t = triangles_[k];
-    const Vec3 a = x_[t[0]].cast<double>(), b = x_[t[1]].cast<double>(),
-               c = x_[t[2]].cast<double>();
-    const Vec3 w = closestBarycentric(p, a, b, c);
-    return (p - (w[0] * a + w[1] * b + w[2] * c)).norm();
-  }
-
-  std::vector<Triangle> triangles_;
-  std::vector<Ball> balls_;
-  std::vector<int> guess_;
-  std::span<const Vec3f> x_;
-};
-
 std::string sizeProblem(const SkinTrack& skin) {
   const std::size_t n = skin.wall.size();
   if (n == 0) return "the history has no airway-skin";
@@ -91,20 +42,19 @@ std::string sizeProblem(const SkinTrack& skin) {
   return skin.positions.empty() ? "the skin has no frames" : "";
 }
 
-/// [frame] narrowest distance from the front column to the back one.
-std::vector<double> vestibule(const SkinTrack& skin, const MidlineColumns& mid) {
-  std::vector<double> out;
+/// Distances from the front column of the vestibule to the back one.
+void measureVestibule(const SkinTrack& skin, const MidlineColumns& mid, LumenProfile& out) {
   auto back = trianglesAlong(skin, mid.vestibuleBack, mid.vestibuleFront);
-  if (mid.vestibuleFront.empty() || back.empty()) return out;
+  if (mid.vestibuleFront.empty() || back.empty()) return;
+  out.vestibuleFront = mid.vestibuleFront;
   SheetDistance distance(std::move(back), mid.vestibuleFront.size());
   for (const auto& x : skin.positions) {
     distance.setFrame(x);
-    double narrowest = std::numeric_limits<double>::infinity();
+    auto& gaps = out.vestibuleGap_m.emplace_back();
     for (std::size_t k = 0; k < mid.vestibuleFront.size(); ++k)
-      narrowest = std::min(narrowest, distance(k, x[mid.vestibuleFront[k]].cast<double>()));
-    out.push_back(narrowest);
+      gaps.push_back(distance(k, x[mid.vestibuleFront[k]].cast<double>()));
+    out.vestibule_m.push_back(*std::min_element(gaps.begin(), gaps.end()));
   }
-  return out;
 }
 }  // namespace
 
@@ -130,7 +80,7 @@ Result<LumenProfile> midlineGaps(const SkinTrack& skin) {
     for (std::size_t k = 0; k < out.stations.size(); ++k)
       g[k] = distance(k, x[out.stations[k].vertex].cast<double>());
   }
-  out.vestibule_m = vestibule(skin, mid);
+  measureVestibule(skin, mid, out);
   return out;
 }
 

@@ -26,6 +26,8 @@ struct LumenProfile {
   /// [frame] narrowest distance between the two sides of the laryngeal vestibule on the midline;
   /// empty when the skin has no laryngeal branch.
   std::vector<double> vestibule_m;
+  std::vector<int> vestibuleFront;                  ///< vertices of its epiglottic side
+  std::vector<std::vector<double>> vestibuleGap_m;  ///< [frame][of them] distance to the other side
 
   /// Gap at s by linear interpolation between stations, clamped at the ends.
   double gapAt(int frame, double s_m) const;

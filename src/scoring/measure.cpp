@@ -5,9 +5,13 @@
 #include <cmath>
 
 #include "scoring/clearance.h"
+#include "scoring/component13.h"
+#include "scoring/component15.h"
 #include "scoring/component4.h"
+#include "scoring/component8.h"
 #include "scoring/conservation.h"
 #include "scoring/events.h"
+#include "scoring/residue.h"
 
 namespace swallowclip::scoring {
 namespace {
@@ -22,18 +26,18 @@ constexpr std::array<const char*, kComponents + 1> kNotJudged{
     "the mouth",
     "mastication: the history holds a fluid bolus, no solid",
     "",
-    "oral residue: the history has no wall-coating thickness by oral location",
+    "",
     "initiation: rule not built in",
     "soft palate: rule not built in",
-    "laryngeal elevation: rule not built in",
+    "",
     "hyoid excursion: rule not built in",
     "epiglottic movement: rule not built in",
     "vestibular closure: rule not built in",
     "stripping wave: rule not built in",
-    "pharyngeal contraction: rule not built in",
+    "",
     "UES opening: rule not built in (needs a score-0 swallow's open time to compare with)",
-    "tongue base retraction: rule not built in",
-    "pharyngeal residue: the history does not tell valleculae and pyriform sinuses apart",
+    "",
+    "",
     "esophageal clearance: the history ends at the UES (s = 180 mm)"};
 
 std::string arrayProblem(const History& h) {
@@ -83,6 +87,18 @@ template <class T>
 void append(std::vector<T>& to, std::vector<T> from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
+
+void add(int component, ComponentReport report, Metrics& m) {
+  const Decision& d = report.decision;
+  m.scores[component] = d.score;
+  m.reasons[component] = d.reason;
+  if (d.score) {
+    m.ambiguous[component] = d.ambiguous;
+    if (d.margin) m.margins[component] = *d.margin, m.nearestCuts[component] = d.cut;
+  }
+  append(m.quantities, std::move(report.quantities));
+  append(m.series, std::move(report.series));
+}
 }  // namespace
 
 Result<Metrics> measure(const History& history, const ScoringRules& rules) {
@@ -97,19 +113,25 @@ Result<Metrics> measure(const History& history, const ScoringRules& rules) {
 
   const MeasuredEvent bpm = measureBpm(history, rules);
   Component4Report four = measureComponent4(history, *lumen, bpm, rules);
-  m.scores[4] = four.decision.score;
-  m.reasons[4] = four.decision.reason;
-  if (four.decision.score) m.ambiguous[4] = four.decision.ambiguous;
-
   EventReport events = measureEvents(history, *lumen, four.onset, bpm, rules);
   m.events = std::move(events.events);
-  append(m.quantities, std::move(four.quantities));
+  add(4, std::move(four), m);
   append(m.quantities, std::move(events.quantities));
-  append(m.quantities, measureClearance(history, rules));
-  append(m.series, std::move(four.series));
   append(m.series, std::move(events.series));
+  const MeasuredEvent* rest = m.event("SwRest");
+  const auto residue =
+      measureResidue(history, rest->time_s ? std::optional(rest->frame) : std::nullopt, rules);
+  add(5, measureResidueComponent(5, residue, rules), m);
+  add(8, measureComponent8(history, *lumen, *m.event("HYB"), rules), m);
+  add(13, measureComponent13(history, m.events, rules), m);
+  add(15, measureComponent15(history, rules), m);
+  add(16, measureResidueComponent(16, residue, rules), m);
+  append(m.quantities, measureClearance(history, rules));
   if (hasBolus(history))
     m.series.push_back({"past_ramus", "share", shareBeyond(history.bolus, rules.ramus_m)});
+  for (Quantity& q : m.quantities)
+    for (const RuleField& field : ruleFields())
+      if (field.cuts(q.name)) q.cuts.push_back(rules.*field.member / field.scale);
   m.conservation = countParticles(history);
   judgeLabel(m);
   return m;

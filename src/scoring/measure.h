@@ -11,5 +11,5 @@ namespace swallowclip::scoring {
 
 /// Fails only when the history cannot be measured at all (no frames, arrays that disagree, no
 /// airway-skin midline); whatever else is missing leaves its quantity empty with a reason.
-Result<Metrics> measure(const frame::History& history, const ScoringRules& rules = {});
+Result<Metrics> measure(const frame::History& history, const ScoringRules& rules);
 }  // namespace swallowclip::scoring

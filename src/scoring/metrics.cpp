@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace swallowclip::scoring {
@@ -28,17 +29,30 @@ const std::string& note(const std::string& rule, const std::string& reason) {
   return reason.empty() ? rule : reason;
 }
 
+/// How far the deciding quantity is from the nearest cut, in percent of it.
+std::string marginCell(const Metrics& m, int component) {
+  const auto margin = m.margins.find(component);
+  return margin == m.margins.end() ? "" : fmt::format("{:.0f} %", 100 * margin->second);
+}
+
+std::string cutsCell(const Quantity& q) {
+  std::string out;
+  for (double cut : q.cuts) out += fmt::format("{}{:g}", out.empty() ? "" : " ", cut);
+  return out;
+}
+
 void addScores(const Metrics& m, std::string& out) {
   auto to = std::back_inserter(out);
   if (m.score >= 0) fmt::format_to(to, "Intended: component {}, score {}\n", m.component, m.score);
   const char* label = !m.labelConfirmed   ? "not judged"
                       : *m.labelConfirmed ? "confirmed"
                                           : "NOT confirmed";
-  fmt::format_to(to, "Label: {} ({})\n\nComponent  Score\n", label, m.labelReason);
+  fmt::format_to(to, "Label: {} ({})\n\nComponent  Score  Margin\n", label, m.labelReason);
   for (const auto& [component, score] : m.scores) {
     const auto unsure = m.ambiguous.find(component);
     const auto why = m.reasons.find(component);
-    fmt::format_to(to, "{:>9}  {:<5}  {}{}\n", component, score ? fmt::format("{}", *score) : "-",
+    fmt::format_to(to, "{:>9}  {:<5} {:>7}  {}{}\n", component,
+                   score ? fmt::format("{}", *score) : "-", marginCell(m, component),
                    why == m.reasons.end() ? "" : why->second,
                    unsure != m.ambiguous.end() && unsure->second ? " [ambiguous]" : "");
   }
@@ -58,6 +72,17 @@ void addConservation(const Conservation& c, std::string& out) {
 }
 }  // namespace
 
+void set(Quantity& q, double value, int frame) {
+  if (!std::isfinite(value)) return;
+  q.value = value, q.frame = frame, q.reason.clear();
+}
+
+Series inMillimetres(std::string name, const std::vector<double>& values_m) {
+  Series s{std::move(name), "mm", values_m};
+  for (double& v : s.values) v *= 1e3;
+  return s;
+}
+
 const Quantity* Metrics::quantity(std::string_view name) const {
   return named(quantities, name);
 }
@@ -76,11 +101,11 @@ std::string formatTable(const Metrics& m) {
   for (const auto& e : m.events)
     fmt::format_to(to, "{:<14} {:>9} {:>6}  {}\n", e.name, cell(e.time_s), cell(e.frame),
                    note(e.rule, e.reason));
-  fmt::format_to(to, "\n{:<22} {:>9} {:<6} {:>6}  {}\n", "Quantity", "value", "unit", "frame",
-                 "rule");
+  fmt::format_to(to, "\n{:<26} {:>9} {:<6} {:>6} {:<19} {}\n", "Quantity", "value", "unit", "frame",
+                 "cuts", "rule");
   for (const auto& q : m.quantities)
-    fmt::format_to(to, "{:<22} {:>9} {:<6} {:>6}  {}\n", q.name, cell(q.value), q.unit,
-                   cell(q.frame), note(q.rule, q.reason));
+    fmt::format_to(to, "{:<26} {:>9} {:<6} {:>6} {:<19} {}\n", q.name, cell(q.value), q.unit,
+                   cell(q.frame), cutsCell(q), note(q.rule, q.reason));
   if (m.conservation) addConservation(*m.conservation, out);
   return out;
 }

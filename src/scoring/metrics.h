@@ -20,7 +20,12 @@ struct Quantity {
   int frame = -1;      ///< where it was read; -1 when it belongs to the whole swallow
   std::string rule;    ///< how it is defined, in words
   std::string reason;  ///< why there is no value
+  std::vector<double> cuts =
+      {};  ///< of the scores that it decides, same unit; filled in by measure()
 };
+
+/// Gives a quantity its value; non-finite ones stay empty with their reason.
+void set(Quantity& quantity, double value, int frame = -1);
 
 /// A measured event; `frame` is the first frame at or after its time.
 struct MeasuredEvent {
@@ -35,6 +40,9 @@ struct Series {
   std::string name, unit;
   std::vector<double> values;
 };
+
+/// Metres over time, as millimetres.
+Series inMillimetres(std::string name, const std::vector<double>& values_m);
 
 /// Particle counts at the last frame, and the solver's own error figures.
 struct Conservation {
@@ -59,6 +67,8 @@ struct Metrics {
   std::map<int, std::optional<int>> scores;  ///< 1..17
   std::map<int, std::string> reasons;        ///< per component: why this score, or why none
   std::map<int, bool> ambiguous;             ///< judged components: too near a cut to ship
+  std::map<int, double> margins;             ///< distance to the nearest cut, as a share of it
+  std::map<int, std::string> nearestCuts;    ///< which one, "section.key" of the rules
   /// The intended score was measured and is not ambiguous. Empty when nothing was intended or the
   /// component could not be judged; then `labelReason` says why.
   std::optional<bool> labelConfirmed;

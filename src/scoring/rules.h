@@ -1,51 +1,64 @@
 // SPDX-License-Identifier: MIT
-// Every cut that the measures use, in one plain struct, SI units, constructible without a file.
-// "ref" = clinical-reference.md, its section; "assumed" = ours, with the range that is still sane.
+// Every number that the measures and scores use, SI units. The numbers stand in one data file,
+// scenes/scoring_rules.json, with their sources, so that a clinician can review and change them;
+// here are only their names. scene/rules_file.h reads it, this table checks it.
 #pragma once
+#include <span>
+#include <string_view>
 
 namespace swallowclip::scoring {
 
 struct ScoringRules {
-  // Path stations (ref 0).
-  double ramus_m = 0.072;       ///< mandibular ramus line
-  double ridgeEnd_m = 0.015;    ///< contact must start within this; assumed, 0.008-0.020
-  double uesTop_m = 0.150;      ///< upper end of the UES
-  double uesEnd_m = 0.180;      ///< lower end of the UES, swallowed beyond
-  double pharynxTop_m = 0.085;  ///< midline area for MPC; assumed, 0.080-0.090
-  double pharynxEnd_m = 0.150;
-
-  // Events (ref 1, 2, 3).
-  double headShare = 0.02;       ///< bolus head: leading share of V0 (ref 3, comp. 2 and 6)
-  double tailShare = 0.98;       ///< bolus tail: share of what passes at all; mirror of the head
-  double throughShare = 0.5;     ///< least share of V0 that makes a transit; assumed 0.3-0.8
-  double hyoidBurst_ms = 0.020;  ///< HYB (ref 3, comp. 6)
-  double sealedRatio = 0.03;     ///< gap rule, sealed q (ref 3, shared rules)
-  double sealed_m = 0.0003;      ///< gap rule, sealed g (ref 3, shared rules)
-  double uesOpen_m = 0.0015;     ///< UES counts as open (ref 3, comp. 14)
-  double restSpeed_ms = 0.005;   ///< SwRest; assumed, 0.003-0.010
-  double restHold_s = 0.1;       ///< and for this long; assumed, 0.07-0.2
-
-  // Component 4 (ref 3, comp. 4).
-  double contactGap_m = 0.001;       ///< tongue counts as touching below this midline gap
-  double lowPass_Hz = 6.0;           ///< oral centroid, zero phase
-  double centroidUntilShare = 0.50;  ///< centroid used until this share has passed the ramus
-  double advanceSpeed_ms = 0.020;    ///< a productive advance exceeds this ...
-  double advancePath_m = 0.010;      ///< ... and covers this
-  double advanceSlack_m = 0.002;     ///< backward step that ends an advance; assumed, 0.001-0.004
-  double slopeFrom = 0.10, slopeTo = 0.90;
-  double reversalRun_m = 0.004;       ///< shortest run of the centroid that counts
-  double dorsalRun_m = 0.008;         ///< the same for the dorsal high point (no bolus)
-  double accommodationRun_m = 0.006;  ///< runs below this ...
-  double accommodationTime_s = 0.4;   ///< ... done within this after their start are dropped
-  double dorsalMinRise_m = 0.0035;    ///< rise that makes a high point: more than the <=3 mm of
-                                      ///< score 4's generator; assumed, 0.003-0.004
-  double dorsalTie_m = 0.0005;     ///< stations this near the highest share it; assumed, 0.3-1 mm
-  double minimalTravel_m = 0.010;  ///< score 4 below this
-  double minimalWait_s = 6.0;      ///< judged this long after the last cue
-  int repetitiveReversals = 2;     ///< score 3 from here on
-  double slow_ms = 0.060;          ///< score 2 below this
-  double brisk_ms = 0.080;         ///< between slow and brisk: ambiguous
-  double delayed_s = 2.0;          ///< score 1 above this
-  double ambiguousMargin = 0.15;   ///< nearer to a cut than this share of it: ambiguous
+  // Stations along the bolus path.
+  double ramus_m = 0, ridgeEnd_m = 0, uesTop_m = 0, uesEnd_m = 0, pharynxTop_m = 0,
+         pharynxEnd_m = 0;
+  // Events.
+  double headShare = 0, tailShare = 0, throughShare = 0, hyoidBurst_ms = 0, uesOpen_m = 0;
+  double restSpeed_ms = 0, restHold_s = 0, residueSpeed_ms = 0;
+  // The normal swallow of the default scene, which ratios refer to.
+  double normalHyoidAnterior_m = 0, normalTongueBase_m = 0, normalShortening_m = 0;
+  double normalRiseHorizontal_m = 0, normalRiseInverted_m = 0, normalRiseOnset_m = 0;
+  // Gap rule, shared.
+  double sealedRatio = 0, sealed_m = 0, traceRatio = 0, narrowRatio = 0;
+  // Residue rule, shared.
+  double residueTrace = 0, residuePool = 0, residueMost = 0, residueNearlyAll = 0;
+  double poolThickness_m = 0, thicknessRadius_m = 0, visibleChord_m = 0;
+  // Where residue lies.
+  double sulcusU = 0, floorEnd_m = 0, valleculaTop_m = 0, valleculaEnd_m = 0, foldsEnd_m = 0;
+  double pyriformTop_m = 0, pyriformEnd_m = 0, pyriformU = 0;
+  // Component 4.
+  double contactGap_m = 0, lowPass_Hz = 0, centroidUntilShare = 0, advanceSpeed_ms = 0;
+  double advancePath_m = 0, advanceSlack_m = 0, slopeFrom = 0, slopeTo = 0, reversalRun_m = 0;
+  double dorsalRun_m = 0, accommodationRun_m = 0, accommodationTime_s = 0, dorsalMinRise_m = 0;
+  double dorsalTie_m = 0, minimalTravel_m = 0, minimalWait_s = 0, repetitiveReversals = 0;
+  double slow_ms = 0, brisk_ms = 0, delayed_s = 0;
+  // Component 8.
+  double horizontal_rad = 0, epiglottisMoves_rad = 0, horizontalWithin_rad = 0;
+  double epiglottisTie_rad = 0, onsetAfter_s = 0;
+  double riseFull = 0, riseHalf = 0, riseNone = 0, vestibuleShut = 0, vestibuleHalf = 0;
+  // Component 13.
+  double wallTop_m = 0, wallEnd_m = 0, bestHeight_m = 0, outlineSmooth_m = 0, pouchHeight_m = 0;
+  double bowing = 0, asymmetry = 0, pouch_m = 0, residualWidth = 0, shorteningLeast = 0;
+  // Component 15.
+  double baseHeight_m = 0, baseTie_m = 0, baseMoves = 0;
+  /// A deciding quantity nearer to a cut than this share of the cut is ambiguous.
+  double ambiguousMargin = 0;
 };
+
+/// One number of the file.
+struct RuleField {
+  const char* section;
+  const char* key;
+  double ScoringRules::*member;
+  double scale;     ///< SI value = number in the file * scale
+  double min, max;  ///< plausible numbers in the file
+  /// Names of the quantities that it cuts between two scores (with commas); nullptr: no cut.
+  const char* quantities = nullptr;
+
+  /// Whether it is a cut of this quantity.
+  bool cuts(std::string_view quantity) const;
+};
+
+/// All of them, in the order of the file.
+std::span<const RuleField> ruleFields();
 }  // namespace swallowclip::scoring

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/vec.h"
 
@@ -115,6 +116,13 @@ std::optional<double> pathSlope(std::span<const double> time_s, std::span<const 
   const auto from_s = reach(fromShare), to_s = reach(toShare);
   if (change == 0 || !from_s || !to_s || !(*to_s > *from_s)) return std::nullopt;
   return (toShare - fromShare) * change / (*to_s - *from_s);
+}
+
+double median(std::vector<double> x) {
+  if (x.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(x.begin(), x.end());
+  const std::size_t n = x.size();
+  return n % 2 ? x[n / 2] : 0.5 * (x[n / 2 - 1] + x[n / 2]);
 }
 
 std::optional<int> firstFrame(std::span<const double> x, int from,

@@ -39,6 +39,9 @@ std::vector<Advance> advances(std::span<const double> time_s, std::span<const do
 std::optional<double> pathSlope(std::span<const double> time_s, std::span<const double> x,
                                 int begin, int end, double fromShare, double toShare);
 
+/// Middle value (mean of the two middle ones); NaN when empty.
+double median(std::vector<double> values);
+
 /// First frame in [from, size) where `test` holds.
 std::optional<int> firstFrame(std::span<const double> x, int from,
                               const std::function<bool(double)>& test);

@@ -6,6 +6,7 @@
 #include "airway/interpenetration.h"
 #include "pipeline/simulation.h"
 #include "run.h"
+#include "scene/rules_file.h"
 #include "scoring/measure.h"
 
 namespace swallowclip::pipeline {
@@ -26,7 +27,10 @@ std::optional<Swallowed> swallow(RunOptions options, int score, const std::strin
   auto history = simulateSwallow(options, score, 30, notes);
   EXPECT_TRUE(history) << history.error().text();
   if (!history) return std::nullopt;
-  auto metrics = scoring::measure(*history);
+  const auto rules = scene::loadScoringRules(scene::scoringRulesFile(options.scenesFolder()));
+  EXPECT_TRUE(rules) << rules.error().text();
+  if (!rules) return std::nullopt;
+  auto metrics = scoring::measure(*history, *rules);
   EXPECT_TRUE(metrics) << metrics.error().text();
   if (!metrics) return std::nullopt;
   return Swallowed{std::move(*history), std::move(*metrics)};

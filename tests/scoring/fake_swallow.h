@@ -8,10 +8,18 @@
 #include <utility>
 
 #include "frame/history.h"
+#include "scene/rules_file.h"
 
 namespace swallowclip::scoring::testing {
 
 inline constexpr double kMm = 1e-3;
+
+/// The rules as shipped.
+inline const ScoringRules& testRules() {
+  static const ScoringRules rules =
+      scene::loadScoringRules(SWALLOWCLIP_SOURCE_DIR "/scenes/scoring_rules.json").value();
+  return rules;
+}
 
 struct FakeSwallow {
   double duration_s = 3.2, fps = 30;
@@ -71,6 +79,7 @@ inline frame::SkinTrack fakeSkinTopology(const FakeSwallow& f) {
 }
 
 inline void addFakeBolus(const FakeSwallow& f, frame::History& h) {
+  h.bolus.particleVolume_m3 = 5e-6 / f.particles;
   using frame::ParticleState;
   for (double t : h.time_s) {
     auto& s = h.bolus.s_m.emplace_back();

@@ -14,7 +14,7 @@ constexpr double kFrame_s = 1.0 / 30;
 Metrics measured(const FakeSwallow& f, int intended) {
   auto h = makeHistory(f);
   h.meta.component = 4, h.meta.score = intended;
-  auto m = measure(h);
+  auto m = measure(h, testRules());
   EXPECT_TRUE(m.has_value());
   return std::move(*m);
 }
@@ -114,11 +114,15 @@ TEST(Component4, OneAccommodatingPairIsDropped) {
       v += 2.0 * (i - 10);
     x.push_back(v);
   }
-  const ScoringRules rules;
-  EXPECT_EQ(countReversals(t, x, 61, 4, {.accommodationRun_m = 6}), 0);
-  EXPECT_EQ(countReversals(t, x, 61, 4, {.accommodationRun_m = 4.5}), 2);
-  EXPECT_EQ(countReversals(t, x, 61, 4, {.accommodationRun_m = 6, .accommodationTime_s = 0.3}), 2);
-  EXPECT_EQ(countReversals(t, x, 8, 4, {.accommodationRun_m = 4.5}), 1);  // BPM between the turns
+  const auto accommodating = [](double run, double time_s) {
+    ScoringRules rules = testRules();
+    rules.accommodationRun_m = run, rules.accommodationTime_s = time_s;
+    return rules;
+  };
+  EXPECT_EQ(countReversals(t, x, 61, 4, accommodating(6, 0.4)), 0);
+  EXPECT_EQ(countReversals(t, x, 61, 4, accommodating(4.5, 0.4)), 2);
+  EXPECT_EQ(countReversals(t, x, 61, 4, accommodating(6, 0.3)), 2);
+  EXPECT_EQ(countReversals(t, x, 8, 4, accommodating(4.5, 0.4)), 1);  // BPM between the turns
 }
 
 TEST(Component4, SlightPauseIsNotAReversal) {
@@ -169,7 +173,7 @@ TEST(Component4, DecisionTable) {
       {with(90, 3, 0, {}, 1.0), {}, false}, {Component4Measures{}, {}, false},
   };
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    const Decision d = decideComponent4(cases[k].m, {});
+    const Decision d = decideComponent4(cases[k].m, testRules());
     EXPECT_EQ(d.score, cases[k].score) << "case " << k << ": " << d.reason;
     EXPECT_EQ(d.ambiguous, cases[k].ambiguous) << "case " << k << ": " << d.reason;
     EXPECT_FALSE(d.reason.empty());
@@ -184,7 +188,7 @@ TEST(Component4, RearSealOfTheHoldIsNoFrontBeforeItHasOpened) {
                  {kShut, kShut, kShut, kShut, kShut, kOpen},   // the wave meets the shut seal
                  {kShut, kShut, kShut, kOpen, kOpen, kOpen},   // it opens
                  {kShut, kShut, kShut, kShut, kShut, kOpen}};  // and is swept
-  const auto s = contactFront_m(lumen, 0, {});
+  const auto s = contactFront_m(lumen, 0, testRules());
   EXPECT_LT(s[0], 0.010);
   EXPECT_NEAR(s[1], 0.020, 0.0051);
   EXPECT_NEAR(s[2], 0.015, 0.0011);
@@ -197,7 +201,7 @@ TEST(Component4, ContactFrontIsBetweenStations) {
   lumen.gap_m = {{0.0001, 0.0005, 0.0015, 0.0001},   // the contact at 20 mm is not continuous
                  {0.0050, 0.0050, 0.0050, 0.0001},   // nothing at the ridge
                  {0.0050, 0.0005, 0.0005, 0.0001}};  // starts behind the first station
-  const auto s = contactFront_m(lumen, 2, {});
+  const auto s = contactFront_m(lumen, 2, testRules());
   EXPECT_NEAR(s[0], 0.0125, 1e-9);
   EXPECT_NEAR(s[1], 0.005, 1e-9);
   EXPECT_NEAR(s[2], 0.020, 1e-9);

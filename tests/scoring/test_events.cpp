@@ -65,7 +65,7 @@ double at(const Metrics& m, const char* name) {
 }
 
 TEST(Events, WholeSwallowIsTimedWithinAFrame) {
-  const Metrics m = measure(fullHistory()).value();
+  const Metrics m = measure(fullHistory(), testRules()).value();
   EXPECT_NEAR(at(m, "tongue_onset"), 0.92, kFrame_s);
   EXPECT_NEAR(at(m, "HYB"), 1.2, kFrame_s);
   EXPECT_NEAR(at(m, "LVC"), 1.35, kFrame_s);
@@ -85,7 +85,7 @@ TEST(Events, WholeSwallowIsTimedWithinAFrame) {
 
 TEST(Events, BpmIsTheFirstFrameOfTheHead) {
   const auto h = fullHistory();
-  const MeasuredEvent bpm = measureBpm(h, {});
+  const MeasuredEvent bpm = measureBpm(h, testRules());
   const auto share = shareBeyond(h.bolus, 0.072);
   ASSERT_GT(bpm.frame, 0);
   EXPECT_GE(share[bpm.frame], 0.02);
@@ -98,14 +98,14 @@ TEST(Events, HyoidLandmarkGoesBeforeTheStructure) {
   for (double t : h.time_s)
     body.positions.push_back(Vec3f(0, 0, t < 1.5 ? 0.f : static_cast<float>(0.1 * (t - 1.5))));
   h.landmarks.push_back(body);
-  const Metrics m = measure(h).value();
+  const Metrics m = measure(h, testRules()).value();
   EXPECT_NEAR(at(m, "HYB"), 1.5, kFrame_s);
 }
 
 TEST(Events, WhatCannotBeJudgedSaysWhy) {
   FakeSwallow f = sweepSwallow(0.92, 0.140, 3.2);
   f.particles = 0;
-  const Metrics m = measure(makeHistory(f)).value();
+  const Metrics m = measure(makeHistory(f), testRules()).value();
   for (const char* name : {"BPM", "HYB", "LVC", "LVCoff", "SwRest", "UESC"}) {
     ASSERT_TRUE(m.event(name)) << name;
     EXPECT_FALSE(m.event(name)->time_s.has_value()) << name;
@@ -121,12 +121,12 @@ TEST(Events, WhatCannotBeJudgedSaysWhy) {
 
 TEST(Events, ClosureOfASeries) {
   const std::vector<double> gap{12e-3, 6e-3, 0.5e-3, 0.2e-3, 0.1e-3, 0.4e-3, 6e-3};
-  const Closure c = measureClosure(gap, 0, {});
+  const Closure c = measureClosure(gap, 0, testRules());
   // 3 % of 12 mm is 0.36 mm.
   EXPECT_EQ(c.closed, 3);
   EXPECT_EQ(c.reopened, 5);
   EXPECT_NEAR(c.narrowest, 0.1 / 12, 1e-12);
-  EXPECT_FALSE(measureClosure(std::vector<double>{5e-3, 4e-3}, 0, {}).closed.has_value());
+  EXPECT_FALSE(measureClosure(std::vector<double>{5e-3, 4e-3}, 0, testRules()).closed.has_value());
 }
 
 TEST(Conservation, CountsEveryParticleOnce) {
@@ -155,7 +155,7 @@ TEST(Conservation, CountsEveryParticleOnce) {
   EXPECT_EQ(c.swallowed, 194);
   EXPECT_DOUBLE_EQ(c.swallowedFraction, 0.97);
   EXPECT_DOUBLE_EQ(c.filmFraction, 0.01);
-  const Metrics m = measure(h).value();
+  const Metrics m = measure(h, testRules()).value();
   EXPECT_DOUBLE_EQ(m.quantity("residue_oral")->value.value(), 1 / 200.0);
   EXPECT_DOUBLE_EQ(m.quantity("residue_larynx")->value.value(), 1 / 200.0);
   h.ledger[last].fluid = 3;  // one is lost without being counted as escaped
@@ -163,25 +163,25 @@ TEST(Conservation, CountsEveryParticleOnce) {
 }
 
 TEST(Clearance, HalfOfTheBolusPassesTheRamus) {
-  const Metrics m = measure(fullHistory()).value();
+  const Metrics m = measure(fullHistory(), testRules()).value();
   // The middle particle passes 72 mm with the front at 72 - 2 - 7.5 mm.
   EXPECT_NEAR(m.quantity("t50_past_ramus")->value.value(), 0.92 + 0.0525 / 0.140, kFrame_s);
 }
 
 TEST(Measure, RefusesBrokenHistories) {
-  EXPECT_FALSE(measure({}).has_value());
+  EXPECT_FALSE(measure({}, testRules()).has_value());
   auto h = fullHistory();
   h.time_s[5] = h.time_s[4];
-  EXPECT_FALSE(measure(h).has_value());
+  EXPECT_FALSE(measure(h, testRules()).has_value());
   h = fullHistory();
   h.bolus.s_m[3].pop_back();
-  EXPECT_FALSE(measure(h).has_value());
+  EXPECT_FALSE(measure(h, testRules()).has_value());
   h = fullHistory();
   h.bolus.region.pop_back();
-  EXPECT_FALSE(measure(h).has_value());
+  EXPECT_FALSE(measure(h, testRules()).has_value());
   h = fullHistory();
   h.structures[0].poses.pop_back();
-  const auto r = measure(h);
+  const auto r = measure(h, testRules());
   ASSERT_FALSE(r.has_value());
   EXPECT_NE(r.error().problem.find("hyoid"), std::string::npos);
 }
@@ -189,12 +189,12 @@ TEST(Measure, RefusesBrokenHistories) {
 TEST(Measure, TableNamesEverything) {
   auto h = fullHistory();
   h.meta.component = 4, h.meta.score = 0;
-  const Metrics m = measure(h).value();
+  const Metrics m = measure(h, testRules()).value();
   const std::string table = formatTable(m);
   for (const auto& q : m.quantities) EXPECT_NE(table.find(q.name), std::string::npos) << q.name;
   for (const auto& e : m.events) EXPECT_NE(table.find(e.name), std::string::npos) << e.name;
   EXPECT_NE(table.find("Label: confirmed"), std::string::npos) << table;
-  EXPECT_EQ(table, formatTable(measure(h).value()));
+  EXPECT_EQ(table, formatTable(measure(h, testRules()).value()));
 }
 }  // namespace
 }  // namespace swallowclip::scoring
