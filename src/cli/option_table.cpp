@@ -119,6 +119,9 @@ Result<void> applyText(const Words& words, RunOptions& options) {
   return {};
 }
 
+Result<void> applyVolume(const Words& words, RunOptions& options) {
+  return store(number("--volume-ml", words[0], 1, 20), options.volume_mL);
+}
 Result<void> applySpacing(const Words& words, RunOptions& options) {
   // Below 0.5 mm 5 mL are 40 000 particles: days, not minutes. Above 4 mm they are 78.
   return store(number("--spacing-mm", words[0], 0.5, 4), options.spacing_mm);
@@ -184,6 +187,8 @@ constexpr OptionRow kOptions[] = {
      applyScore},
     {"--bolus", "NAME|FILE|none", "Bolus (default thesis-honey)", kSwallow, 0, false,
      applyText<&RunOptions::bolus>},
+    {"--volume-ml", "ML", "Volume of the bolus, 1 to 20 (default 5)", kSwallow, 0, false,
+     applyVolume},
     {"--views", "LIST", "Views with commas (default oblique,ap,si)", kPictures, 0, false,
      applyViews},
     {"--scene", "NAME|DIR", "Anatomy (default adult)", kSwallow, 0, false,

@@ -161,7 +161,7 @@ double Choreography::leftBehind(double s, double u, double bulge, double tau) co
   }
   const double away = std::max(0.0, restPosture(s, u) - bulge * (1 - u * u));
   const double tongueBase =
-      (1 - track("tongue_base", tau)) * away * plateau(s, 0.080, 0.090, 0.100, 0.107);
+      (1 - track("tongue_base", tau)) * away * plateau(s, 0.086, 0.092, 0.100, 0.106);
   const double gain = track(u > 0 ? "wall_left" : "wall_right", tau);
   const double slit = (1 - gain) * kSideSlit_m * plateau(s, 0.104, 0.114, 0.140, 0.150) *
                       smoothstep((au - 0.12) / 0.3) * (1 - au * au);

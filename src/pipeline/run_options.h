@@ -32,6 +32,7 @@ struct RunOptions {
   std::filesystem::path swallow;  ///< empty: the file of component and score
   std::vector<TrackSetting> sets;
   std::string preset = "training";  ///< name in render_presets/, or a .json file
+  double volume_mL = 5;             ///< of the bolus, 1 to 20
   double spacing_mm = 2;            ///< particle spacing; 2 mm = 621 particles in 5 mL
   std::string solver = "dfsph";     ///< dfsph or wcsph
   std::filesystem::path out = "output";

@@ -14,6 +14,7 @@ namespace {
 using kinematics::SwallowDef;
 using kinematics::Track;
 constexpr int kMaxBases = 4;
+constexpr double kMostGravity_ms2 = 20;
 
 struct TrackKey {
   const char* name;
@@ -106,6 +107,11 @@ Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
     j.fail("'cues_s' must begin with 0", "Time 0 is the cue.");
   if (j.has("front_s_mm")) d.front_m = readCurve(j, "front_s_mm", 1, kMetrePerMm);
   d.frontAmplitude = j.number("front_amplitude", 0, 1, d.frontAmplitude);
+  d.gravity_ms2 = j.vec3("gravity_ms2", d.gravity_ms2);
+  if (d.gravity_ms2.norm() > kMostGravity_ms2)
+    j.member("gravity_ms2")
+        .fail("more than twice the earth's gravity",
+              "Upright it is [0, 0, -9.81], lying on the back [0, 9.81, 0].");
   d.roomFactor = j.number("room_factor", 1.1, 1.6, d.roomFactor);
   d.grooveStart_m = j.number("groove_start_mm", 0, 40, d.grooveStart_m / kMetrePerMm) * kMetrePerMm;
   d.grooveEnd_m = j.number("groove_end_mm", 25, 70, d.grooveEnd_m / kMetrePerMm) * kMetrePerMm;
