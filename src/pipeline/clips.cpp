@@ -55,12 +55,24 @@ render::CaptionText captionFor(const frame::History& h, const std::vector<EventM
   return c;
 }
 
-// The scored moment: tongue transport is judged at bolus passing mandible, else mid-clip.
+// The scored moment, else the bolus passing the mandible, else mid-clip.
 int posterFrame(const frame::History& h, const scoring::Metrics& m) {
-  for (const char* name : {"BPM", "t_on"})
-    if (const auto* e = m.event(name); e && e->time_s && e->frame >= 0)
-      return std::min(e->frame, h.frames() - 1);
+  if (const auto at = m.scoredFrames.find(h.meta.component); at != m.scoredFrames.end())
+    return std::min(at->second, h.frames() - 1);
+  if (const auto* e = m.event("BPM"); e && e->time_s) return std::min(e->frame, h.frames() - 1);
   return h.frames() / 2;
+}
+
+// "tongue base gap 3.2 mm": what decides the score, as it is at a frame; "" where nothing does.
+std::string liveValue(const frame::History& h, const scoring::Metrics& m, int frame) {
+  const auto name = m.liveSeries.find(h.meta.component);
+  const auto* series = name == m.liveSeries.end() ? nullptr : m.find(name->second);
+  if (!series || !std::isfinite(series->values[frame])) return "";
+  std::string words = series->name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  const bool share = series->unit == "share";
+  return fmt::format("{} {:.1f} {}", words, (share ? 100 : 1) * series->values[frame],
+                     share ? "%" : series->unit);
 }
 }  // namespace
 
@@ -78,6 +90,7 @@ Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& pre
   if (!renderer) return std::unexpected(renderer.error());
   const std::vector<EventMark> marks = eventMarks(h, m);
   render::CaptionText caption = captionFor(h, marks);
+  const std::string bolus = caption.subtitle;
   std::vector<video::Chapter> chapters;
   for (const EventMark& e : marks) chapters.push_back({e.name, e.time_s});
   const int poster = posterFrame(h, m);
@@ -99,6 +112,8 @@ Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& pre
       if (interrupted()) return std::unexpected(interruptedError());
       const double t0 = now_s();
       caption.time_s = h.time_s[k];
+      const std::string live = liveValue(h, m, k);
+      caption.subtitle = live.empty() ? bolus : bolus + "  ·  " + live;
       auto image = renderer->draw(h, k, view, caption);
       if (!image) return std::unexpected(image.error());
       const double t1 = now_s();

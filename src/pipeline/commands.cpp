@@ -6,6 +6,7 @@
 #include "frame/history_file.h"
 #include "pipeline/clips.h"
 #include "pipeline/components.h"
+#include "pipeline/confirm.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/simulation.h"
@@ -13,10 +14,8 @@
 #include "scene/file_kind.h"
 #include "scene/mapping_file.h"
 #include "scene/preset_file.h"
-#include "scene/rules_file.h"
 #include "scene/side_file.h"
 #include "scene/swallow_file.h"
-#include "scoring/measure.h"
 
 namespace swallowclip::pipeline {
 namespace {
@@ -28,23 +27,12 @@ std::filesystem::path clipFolder(const RunOptions& o, const frame::Meta& m) {
   return m.component > 0 ? o.out / fmt::format("c{:02}", m.component) : o.out / m.swallow;
 }
 
-std::string verdict(const frame::Meta& m, const scoring::Metrics& metrics) {
-  if (!metrics.labelConfirmed) return metrics.labelReason;
-  return *metrics.labelConfirmed ? fmt::format("score {} confirmed by measurement", m.score)
-                                 : "NOT confirmed: " + metrics.labelReason;
-}
-
-Result<scoring::Metrics> measureHistory(const RunOptions& o, const frame::History& h) {
-  auto rules = scene::loadScoringRules(scene::scoringRulesFile(o.scenesFolder()));
-  if (!rules) return std::unexpected(rules.error());
-  return scoring::measure(h, *rules);
-}
-
 Result<void> publish(const RunOptions& o, const render::RenderPreset& preset,
                      const frame::History& h, double simulation_s, Progress& progress) {
-  auto metrics = measureHistory(o, h);
+  auto metrics = measureHistory(o.scenesFolder(), h);
   if (!metrics) return std::unexpected(metrics.error());
-  const std::filesystem::path folder = clipFolder(o, h.meta);
+  const Confirmation confirmation = confirm(h.meta, *metrics);
+  const std::filesystem::path folder = placeFor(confirmation, clipFolder(o, h.meta));
   if (auto ready = prepareFolder(folder); !ready) return ready;
   const std::string stem = clipStem(h.meta);
   // The side file says that its clips are whole: it goes first and comes back last.
@@ -56,7 +44,7 @@ Result<void> publish(const RunOptions& o, const render::RenderPreset& preset,
   if (auto written = writeFile(side, scene::sideFileText(h, *metrics)); !written) return written;
   progress.note(fmt::format(
       "{}: {}; simulation {:.1f} s, drawing {:.1f} s, encoding beside it {:.1f} s", side.string(),
-      verdict(h.meta, *metrics), simulation_s, times->drawing_s, times->encoding_s));
+      confirmation.reason, simulation_s, times->drawing_s, times->encoding_s));
   return {};
 }
 
@@ -97,7 +85,7 @@ Result<void> simulate(const RunOptions& o, Progress& progress) {
 Result<void> measure(const RunOptions& o, Progress& progress) {
   auto history = frame::loadHistory(o.history);
   if (!history) return std::unexpected(history.error());
-  auto metrics = measureHistory(o, *history);
+  auto metrics = measureHistory(o.scenesFolder(), *history);
   if (!metrics) return std::unexpected(metrics.error());
   progress.print(o.json ? scene::sideFileText(*history, *metrics) : scoring::formatTable(*metrics));
   return {};

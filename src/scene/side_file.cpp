@@ -73,6 +73,11 @@ std::string sideFileText(const frame::History& h, const scoring::Metrics& m) {
   j["score_reasons"] = Json::object();
   for (const auto& [component, reason] : m.reasons)
     j["score_reasons"][std::to_string(component)] = reason;
+  j["score_margins"] = Json::object();
+  for (const auto& [component, margin] : m.margins)
+    j["score_margins"][std::to_string(component)] = {{"share_of_cut", number(margin)},
+                                                     {"cut", m.nearestCuts.at(component)},
+                                                     {"ambiguous", m.ambiguous.at(component)}};
   j["label_confirmed"] = m.labelConfirmed ? Json(*m.labelConfirmed) : Json(nullptr);
   j["label_reason"] = m.labelReason;
   j["events_s"] = Json::object();
@@ -84,6 +89,8 @@ std::string sideFileText(const frame::History& h, const scoring::Metrics& m) {
     Json& out = j["quantities"][q.name];
     out = {{"value", number(q.value)}, {"unit", q.unit}};
     if (q.frame >= 0) out["frame"] = q.frame;
+    if (!q.cuts.empty()) out["cuts"] = q.cuts;
+    out["rule"] = q.rule;
     if (!q.reason.empty()) out["reason"] = q.reason;
   }
   j["bolus_conservation"] = m.conservation ? conservationJson(*m.conservation) : Json(nullptr);

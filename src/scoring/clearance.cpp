@@ -64,7 +64,7 @@ std::vector<Quantity> measureClearance(const frame::History& history, const Scor
 
   const int last = history.frames() - 1;
   for (const RegionName& r : kResidueRegions) {
-    Quantity q{std::string("residue_") + r.name,
+    Quantity q{std::string("left_in_") + r.name,
                {},
                "share",
                last,

@@ -170,10 +170,11 @@ double pouchDepth_m(const std::vector<double>& levels, const std::vector<double>
   double deepest = 0;
   for (int k = 0; k < n; ++k) {
     if (bump[k] <= deepest) continue;
-    // Its height: where it is at least half as deep.
+    // Its height: where the outline stands out by more than half of the bump.
+    const double half = outward[k] - 0.5 * bump[k];
     int a = k, b = k;
-    while (a > 0 && bump[a - 1] >= 0.5 * bump[k]) --a;
-    while (b + 1 < n && bump[b + 1] >= 0.5 * bump[k]) ++b;
+    while (a > 0 && outward[a - 1] >= half) --a;
+    while (b + 1 < n && outward[b + 1] >= half) ++b;
     if (levels[b] - levels[a] <= rules.pouchHeight_m) deepest = bump[k];
   }
   return deepest;
@@ -246,6 +247,7 @@ ComponentReport measureComponent13(const History& h, const std::vector<MeasuredE
         fmt::format("bulge left {:.2f}, right {:.2f}; residual width {:.2f}, pouch "
                     "{:.1f} mm, shortening {:.2f}",
                     m.bulgeLeft, m.bulgeRight, m.residualWidth, m.pouch_m * 1e3, m.shortening));
+    out.frame = j.mpc;
     if (!out.decision.score)
       out.decision.reason += ": the sides differ though neither bows, no score says so";
   } else {

@@ -9,6 +9,7 @@
 
 #include "scoring/events.h"
 #include "scoring/midline.h"
+#include "scoring/profile.h"
 #include "scoring/series.h"
 #include "scoring/spine.h"
 
@@ -18,22 +19,6 @@ using frame::History;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLevel_m = 1e-3;  // between level lines; assumed, 0.5-2 mm
 constexpr int kLeastLevels = 5;    // of 21; assumed, 3-10
-
-/// Where a chain of midline vertices crosses a height: the rearmost crossing (least forward) or
-/// the foremost one.
-double crossing(const std::vector<int>& chain, const std::vector<Vec3f>& x, const Spine& spine,
-                double height_m, bool rearmost) {
-  double best = kNaN;
-  for (std::size_t k = 1; k < chain.size(); ++k) {
-    const Vec3 a = x[chain[k - 1]].cast<double>(), b = x[chain[k]].cast<double>();
-    const double ha = spine.height_m(a) - height_m, hb = spine.height_m(b) - height_m;
-    if (ha * hb > 0 || ha == hb) continue;
-    const double w = ha / (ha - hb);
-    const double at = (1 - w) * spine.forward_m(a) + w * spine.forward_m(b);
-    if (!std::isfinite(best) || (rearmost ? at < best : at > best)) best = at;
-  }
-  return best;
-}
 
 struct Chains {
   std::vector<int> tongue, wall;
@@ -70,8 +55,9 @@ TongueBase measureTongueBase(const History& h, int rest, const ScoringRules& rul
     std::vector<double> at;
     for (int k = 0; k < levels; ++k) {
       const double height = middle + (k - 0.5 * (levels - 1)) * kLevel_m;
-      at.push_back(crossing(chains.tongue, h.skin.positions[frame], spine, height, true));
-      const double wall = crossing(chains.wall, h.skin.positions[frame], spine, height, false);
+      at.push_back(crossingForward_m(chains.tongue, h.skin.positions[frame], spine, height, true));
+      const double wall =
+          crossingForward_m(chains.wall, h.skin.positions[frame], spine, height, false);
       if (gaps && std::isfinite(at.back() - wall)) gaps->push_back(at.back() - wall);
     }
     return at;
@@ -139,6 +125,7 @@ ComponentReport measureComponent15(const History& h, const ScoringRules& rules) 
         at = f;
     const Component15Measures m{base.gap_m[at], base.gap_m[at] / base.gap_m[rest],
                                 base.travel_m[most] / rules.normalTongueBase_m};
+    out.frame = at;
     set(gap, m.gap_m * 1e3, at), set(ratio, m.ratio, at), set(travel, m.travelRatio, most);
     out.decision =
         decide([&](const ScoringRules& r) { return scoreComponent15(m, r); }, rules,
@@ -148,6 +135,7 @@ ComponentReport measureComponent15(const History& h, const ScoringRules& rules) 
     out.decision.reason = "tongue base: " + lack;
   }
   out.quantities = {gap, ratio, travel};
+  out.liveSeries = "tongue_base_gap";
   out.series = {inMillimetres("tongue_base_gap", base.gap_m),
                 inMillimetres("tongue_base_travel", base.travel_m)};
   return out;

@@ -364,6 +364,8 @@ Component4Report measureComponent4(const History& h, const LumenProfile& lumen,
   if (out.onset.time_s) m.delay_s = *out.onset.time_s - h.meta.cue_s;
   out.decision = decideComponent4(m, rules);
 
+  out.frame = bpm.frame;
+  out.liveSeries = "contact_front";
   addQuantities(h, bpm, rocking, frontTravel_m, dorsalTravel_m, rules, out);
   addSeries("contact_front", front, out);
   addSeries("dorsal_high_point", dorsal, out);

@@ -84,6 +84,8 @@ ComponentReport measureComponent8(const History& h, const LumenProfile& lumen,
   else
     out.decision.reason = "laryngeal elevation: " + rise.reason;
   out.quantities = {rise, width};
+  out.frame = at.frame;
+  out.liveSeries = "larynx_superior";
   Series turn{"epiglottis_angle", "deg", angle};
   for (double& a : turn.values) a *= 180 / kPi;
   if (!angle.empty()) out.series.push_back(turn);

@@ -27,6 +27,8 @@ struct ComponentReport {
   Decision decision;
   std::vector<Quantity> quantities;
   std::vector<Series> series;
+  int frame = -1;          ///< at which it is judged
+  std::string liveSeries;  ///< of all series, the one that shows what decides
 };
 
 /// A score from rules whose cuts may have been moved.

@@ -89,8 +89,6 @@ void addVestibule(const History& h, const LumenProfile& lumen, const ScoringRule
   Series series{"vestibule_gap", "mm", gap};
   for (double& g : series.values) g *= 1e3;
   out.series.push_back(series);
-  out.quantities.push_back({"vestibule_narrowest", c.narrowest, "ratio", -1,
-                            "least vestibule width over its width at the cue", ""});
 }
 
 void addUes(const History& h, const LumenProfile& lumen, const ScoringRules& rules,
@@ -102,12 +100,9 @@ void addUes(const History& h, const LumenProfile& lumen, const ScoringRules& rul
       fmt::format("first frame with {:g} mm or more at the narrowest level", rules.uesOpen_m * 1e3);
   const std::string widest = "frame at which the narrowest level is widest";
   const std::string shut = "first frame after UESMax with every level below the open width";
-  std::vector<double> narrow, wide;
-  for (int f = 0; a < b && f < h.frames(); ++f) {
-    const auto [lo, hi] =
-        std::minmax_element(lumen.gap_m[f].begin() + a, lumen.gap_m[f].begin() + b);
-    narrow.push_back(*lo), wide.push_back(*hi);
-  }
+  std::vector<double> narrow = uesGap_m(h, lumen, rules), wide;
+  for (int f = 0; a < b && f < h.frames(); ++f)
+    wide.push_back(*std::max_element(lumen.gap_m[f].begin() + a, lumen.gap_m[f].begin() + b));
   const std::string lack = narrow.empty() ? "the skin has no midline there" : "it never opens";
   const auto ueso = firstFrame(narrow, cueFrame(h), [&](double g) { return g >= rules.uesOpen_m; });
   std::optional<int> uesMax, uesc;
@@ -158,6 +153,11 @@ void addConstriction(const History& h, const LumenProfile& lumen, const ScoringR
   if (area.values[cue] > 0)
     ratio.frame = mpc, ratio.value = area.values[mpc] / area.values[cue], ratio.reason.clear();
   out.quantities.push_back(ratio);
+  Quantity share{
+      "mpc_percent_c2c4", {}, "%(C2-4)2", -1, "midsagittal lumen area at MPC over (C2-C4)^2", ""};
+  const double c2c4_mm = spineAt(h, mpc).c2c4_m * 1e3;
+  set(share, 100 * area.values[mpc] / (c2c4_mm * c2c4_mm), mpc);
+  out.quantities.push_back(share);
   out.series.push_back(std::move(area));
 }
 
@@ -309,6 +309,15 @@ std::vector<double> petioleGap_m(const History& h, const LumenProfile& lumen) {
     out.push_back(least);
   }
   return out;
+}
+
+std::vector<double> uesGap_m(const History& h, const LumenProfile& lumen,
+                             const ScoringRules& rules) {
+  const auto [a, b] = lumen.range(rules.uesTop_m, rules.uesEnd_m);
+  std::vector<double> narrow;
+  for (int f = 0; a < b && f < h.frames(); ++f)
+    narrow.push_back(*std::min_element(lumen.gap_m[f].begin() + a, lumen.gap_m[f].begin() + b));
+  return narrow;
 }
 
 EventReport measureEvents(const History& h, const LumenProfile& lumen, const MeasuredEvent& onset,

@@ -44,6 +44,10 @@ std::vector<double> vestibuleGap_m(const frame::History& history);
 /// the petiole's height at the cue; without a branch the stand-in above.
 std::vector<double> petioleGap_m(const frame::History& history, const LumenProfile& lumen);
 
+/// [frame] gap at the narrowest level of the UES; empty when the skin has no midline there.
+std::vector<double> uesGap_m(const frame::History& history, const LumenProfile& lumen,
+                             const ScoringRules& rules);
+
 struct EventReport {
   std::vector<MeasuredEvent> events;  ///< tongue_onset, BPM, HYB, LVC, UESO, UESMax, MPC, UESC,
                                       ///< LVCoff, SwRest

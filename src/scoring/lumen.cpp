@@ -42,19 +42,26 @@ std::string sizeProblem(const SkinTrack& skin) {
   return skin.positions.empty() ? "the skin has no frames" : "";
 }
 
-/// Distances from the front column of the vestibule to the back one.
-void measureVestibule(const SkinTrack& skin, const MidlineColumns& mid, LumenProfile& out) {
-  auto back = trianglesAlong(skin, mid.vestibuleBack, mid.vestibuleFront);
-  if (mid.vestibuleFront.empty() || back.empty()) return;
-  out.vestibuleFront = mid.vestibuleFront;
-  SheetDistance distance(std::move(back), mid.vestibuleFront.size());
+/// [frame][front vertex] distance from a branch's front column to its back one.
+std::vector<std::vector<double>> branchGaps(const SkinTrack& skin, const std::vector<int>& front,
+                                            const std::vector<int>& behind) {
+  std::vector<std::vector<double>> out;
+  auto back = trianglesAlong(skin, behind, front);
+  if (front.empty() || back.empty()) return out;
+  SheetDistance distance(std::move(back), front.size());
   for (const auto& x : skin.positions) {
     distance.setFrame(x);
-    auto& gaps = out.vestibuleGap_m.emplace_back();
-    for (std::size_t k = 0; k < mid.vestibuleFront.size(); ++k)
-      gaps.push_back(distance(k, x[mid.vestibuleFront[k]].cast<double>()));
-    out.vestibule_m.push_back(*std::min_element(gaps.begin(), gaps.end()));
+    auto& gaps = out.emplace_back();
+    for (std::size_t k = 0; k < front.size(); ++k)
+      gaps.push_back(distance(k, x[front[k]].cast<double>()));
   }
+  return out;
+}
+
+std::vector<double> narrowest(const std::vector<std::vector<double>>& gaps) {
+  std::vector<double> out;
+  for (const auto& g : gaps) out.push_back(*std::min_element(g.begin(), g.end()));
+  return out;
 }
 }  // namespace
 
@@ -80,7 +87,10 @@ Result<LumenProfile> midlineGaps(const SkinTrack& skin) {
     for (std::size_t k = 0; k < out.stations.size(); ++k)
       g[k] = distance(k, x[out.stations[k].vertex].cast<double>());
   }
-  measureVestibule(skin, mid, out);
+  out.vestibuleFront = mid.vestibuleFront;
+  out.vestibuleGap_m = branchGaps(skin, mid.vestibuleFront, mid.vestibuleBack);
+  out.vestibule_m = narrowest(out.vestibuleGap_m);
+  out.port_m = narrowest(branchGaps(skin, mid.portFront, mid.portBack));
   return out;
 }
 

@@ -29,6 +29,9 @@ struct LumenProfile {
   std::vector<int> vestibuleFront;                  ///< vertices of its epiglottic side
   std::vector<std::vector<double>> vestibuleGap_m;  ///< [frame][of them] distance to the other side
 
+  /// [frame] the same of the velopharyngeal port; empty without a nasopharyngeal branch.
+  std::vector<double> port_m;
+
   /// Gap at s by linear interpolation between stations, clamped at the ends.
   double gapAt(int frame, double s_m) const;
   /// Stations with from <= s <= to, as a half-open index range.

@@ -4,14 +4,21 @@
 #include <array>
 #include <cmath>
 
+#include "scoring/airway.h"
+#include "scoring/bolus_head.h"
 #include "scoring/clearance.h"
+#include "scoring/closures.h"
+#include "scoring/component12.h"
 #include "scoring/component13.h"
+#include "scoring/component14.h"
 #include "scoring/component15.h"
 #include "scoring/component4.h"
 #include "scoring/component8.h"
 #include "scoring/conservation.h"
 #include "scoring/events.h"
+#include "scoring/excursions.h"
 #include "scoring/residue.h"
+#include "scoring/residue_area.h"
 
 namespace swallowclip::scoring {
 namespace {
@@ -20,25 +27,15 @@ using frame::History;
 
 /// Why a component has no score yet: what the history lacks, or that nobody has built its rule.
 constexpr std::array<const char*, kComponents + 1> kNotJudged{
-    "",
-    "lip closure: the history has no lips or chin",
-    "tongue control: the history does not tell lateral sulci and floor of mouth from the rest of "
-    "the mouth",
-    "mastication: the history holds a fluid bolus, no solid",
-    "",
-    "",
-    "initiation: rule not built in",
-    "soft palate: rule not built in",
-    "",
-    "hyoid excursion: rule not built in",
-    "epiglottic movement: rule not built in",
-    "vestibular closure: rule not built in",
-    "stripping wave: rule not built in",
-    "",
-    "UES opening: rule not built in (needs a score-0 swallow's open time to compare with)",
-    "",
-    "",
-    "esophageal clearance: the history ends at the UES (s = 180 mm)"};
+    "", "lip closure: the history has no lips or chin",
+    "", "mastication: the history holds a fluid bolus, no solid",
+    "", "",
+    "", "",
+    "", "",
+    "", "",
+    "", "",
+    "", "",
+    "", "esophageal clearance: the history ends at the UES (s = 180 mm)"};
 
 std::string arrayProblem(const History& h) {
   const std::size_t n = h.time_s.size();
@@ -79,13 +76,34 @@ void judgeLabel(Metrics& m) {
                                 *score->second, m.reasons[m.component]);
   } else {
     m.labelConfirmed = !m.ambiguous[m.component];
-    m.labelReason = m.ambiguous[m.component] ? "as intended, but too near a cut" : "as intended";
+    m.labelReason = "as intended";
+    if (const auto cut = m.nearestCuts.find(m.component); cut != m.nearestCuts.end())
+      m.labelReason +=
+          fmt::format(", {:.0f} % from the cut {}", 100 * m.margins[m.component], cut->second);
+    if (!*m.labelConfirmed) m.labelReason += ": too near to call";
   }
 }
 
 template <class T>
 void append(std::vector<T>& to, std::vector<T> from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+std::vector<Series> bolusSeries(const History& h, const ScoringRules& rules) {
+  Series mouth{"oral_share", "share", {}}, pharynx{"pharyngeal_share", "share", {}};
+  for (int f = 0; f < h.frames(); ++f) {
+    double oral = 0, throat = 0;
+    for (std::size_t k = 0; k < h.bolus.state[f].size(); ++k) {
+      if (h.bolus.state[f][k] == frame::ParticleState::swallowed) continue;
+      const frame::Region r = h.bolus.region[f][k];
+      oral += r == frame::Region::oral;
+      throat += r == frame::Region::oropharynx || r == frame::Region::hypopharynx;
+    }
+    const auto all = static_cast<double>(h.bolus.state[f].size());
+    mouth.values.push_back(oral / all), pharynx.values.push_back(throat / all);
+  }
+  return {mouth, pharynx, inMillimetres("bolus_head", bolusHead_m(h.bolus, rules)),
+          inMillimetres("bolus_centroid", bolusCentroid_m(h.bolus))};
 }
 
 void add(int component, ComponentReport report, Metrics& m) {
@@ -96,6 +114,8 @@ void add(int component, ComponentReport report, Metrics& m) {
     m.ambiguous[component] = d.ambiguous;
     if (d.margin) m.margins[component] = *d.margin, m.nearestCuts[component] = d.cut;
   }
+  if (report.frame >= 0) m.scoredFrames[component] = report.frame;
+  if (!report.liveSeries.empty()) m.liveSeries[component] = report.liveSeries;
   append(m.quantities, std::move(report.quantities));
   append(m.series, std::move(report.series));
 }
@@ -121,11 +141,26 @@ Result<Metrics> measure(const History& history, const ScoringRules& rules) {
   const MeasuredEvent* rest = m.event("SwRest");
   const auto residue =
       measureResidue(history, rest->time_s ? std::optional(rest->frame) : std::nullopt, rules);
+  const MeasuredEvent &onset = *m.event("tongue_onset"), &hyb = *m.event("HYB");
+  add(2, measureComponent2(history, onset, rules), m);
   add(5, measureResidueComponent(5, residue, rules), m);
-  add(8, measureComponent8(history, *lumen, *m.event("HYB"), rules), m);
+  add(6, measureComponent6(history, hyb, rules), m);
+  add(7, measureComponent7(history, *lumen, rules), m);
+  add(8, measureComponent8(history, *lumen, hyb, rules), m);
+  add(9, measureComponent9(history, rules), m);
+  add(10, measureComponent10(history, rules), m);
+  add(11, measureComponent11(history, *lumen, rules), m);
+  add(12, measureComponent12(history, rules), m);
   add(13, measureComponent13(history, m.events, rules), m);
+  add(14, measureComponent14(history, uesGap_m(history, *lumen, rules), m.events, rules), m);
   add(15, measureComponent15(history, rules), m);
   add(16, measureResidueComponent(16, residue, rules), m);
+  Excursions excursions = measureExcursions(history);
+  append(m.quantities, std::move(excursions.quantities));
+  append(m.series, std::move(excursions.series));
+  append(m.quantities, measureAirway(history, rules));
+  append(m.quantities, measureResidueAreas(history, residue, rules));
+  if (hasBolus(history)) append(m.series, bolusSeries(history, rules));
   append(m.quantities, measureClearance(history, rules));
   if (hasBolus(history))
     m.series.push_back({"past_ramus", "share", shareBeyond(history.bolus, rules.ramus_m)});

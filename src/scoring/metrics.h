@@ -69,6 +69,8 @@ struct Metrics {
   std::map<int, bool> ambiguous;             ///< judged components: too near a cut to ship
   std::map<int, double> margins;             ///< distance to the nearest cut, as a share of it
   std::map<int, std::string> nearestCuts;    ///< which one, "section.key" of the rules
+  std::map<int, int> scoredFrames;           ///< at which a component was judged
+  std::map<int, std::string> liveSeries;     ///< the series that shows what decides
   /// The intended score was measured and is not ambiguous. Empty when nothing was intended or the
   /// component could not be judged; then `labelReason` says why.
   std::optional<bool> labelConfirmed;

@@ -82,6 +82,20 @@ void findVestibule(const SkinTrack& skin, const std::vector<int>& mid,
     if (back_m - skin.s_m[v] <= kSameStation_m) out.vestibuleBack.push_back(v);
   }
 }
+
+/// The same for the port behind the velum; the branch's far end carries an s between its rims'.
+void findPort(const SkinTrack& skin, const std::vector<int>& mid, const std::vector<char>& reached,
+              MidlineColumns& out) {
+  double back_m = 0;
+  for (int v : mid) {
+    if (reached[v]) continue;
+    if (skin.wall[v] == Wall::velum) out.portFront.push_back(v);
+    if (skin.wall[v] == Wall::posterior) back_m = std::max(back_m, double(skin.s_m[v]));
+  }
+  for (int v : mid)
+    if (!reached[v] && skin.wall[v] == Wall::posterior && back_m - skin.s_m[v] <= kSameStation_m)
+      out.portBack.push_back(v);
+}
 }  // namespace
 
 MidlineColumns findMidline(const SkinTrack& skin) {
@@ -101,6 +115,7 @@ MidlineColumns findMidline(const SkinTrack& skin) {
     if (atEnd && !reached[v]) assign(skin, walk(next, v, reached), out);
   }
   findVestibule(skin, mid, reached, out);
+  findPort(skin, mid, reached, out);
   sortByS(skin, out.lower);
   sortByS(skin, out.upper);
   return out;

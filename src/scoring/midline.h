@@ -23,6 +23,8 @@ struct MidlineColumns {
   std::vector<int> upper;  ///< palate, velum, posterior wall, posterior esophagus
   /// Inside of the laryngeal branch: epiglottic and arytenoid side. Empty without such a branch.
   std::vector<int> vestibuleFront, vestibuleBack;
+  /// Inside of the nasopharyngeal branch: velar and posterior side. Empty without such a branch.
+  std::vector<int> portFront, portBack;
 };
 
 /// The skin's arrays must agree (see midlineGaps).

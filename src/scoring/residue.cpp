@@ -204,6 +204,7 @@ ComponentReport measureResidueComponent(int component, const std::optional<Resid
                             residue->thickness_m(component, rules.thicknessRadius_m)};
     share.rule += "; " + residue->when;
     set(share, m.share, residue->frame), set(thick, m.thickness_m * 1e3, residue->frame);
+    out.frame = residue->frame;
     std::string letters;
     for (int k = 0; k < kLocations; ++k) {
       const auto at = static_cast<Location>(k);
@@ -218,6 +219,7 @@ ComponentReport measureResidueComponent(int component, const std::optional<Resid
                            m.thickness_m * 1e3, letters.empty() ? "" : ", at ", letters));
   }
   out.quantities = {share, thick};
+  out.liveSeries = region + "_share";
   return out;
 }
 }  // namespace swallowclip::scoring

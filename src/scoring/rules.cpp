@@ -9,6 +9,7 @@ using R = ScoringRules;
 constexpr double kMm = 1e-3, kOne = 1, kDeg = kPi / 180;
 constexpr const char *kRise = "larynx_rise_ratio", *kGap = "vestibule_ratio_at_score",
                      *kBase = "tongue_base_gap_ratio",
+                     *kWave = "wall_excursion_2,wall_excursion_3,wall_excursion_4",
                      *kBow = "side_wall_bulge_left,side_wall_bulge_right",
                      *kResidue = "oral_residue,pharyngeal_residue";
 
@@ -37,6 +38,11 @@ constexpr RuleField kFields[] = {
     {"normal_swallow", "larynx_rise_epiglottis_most_moved_mm", &R::normalRiseInverted_m, kMm, 0.5,
      60},
     {"normal_swallow", "larynx_rise_hyoid_onset_mm", &R::normalRiseOnset_m, kMm, 0.1, 60},
+    {"normal_swallow", "wall_excursion_c2_mm", &R::normalWallC2_m, kMm, 0.2, 20},
+    {"normal_swallow", "wall_excursion_c3_mm", &R::normalWallC3_m, kMm, 0.2, 20},
+    {"normal_swallow", "wall_excursion_c4_mm", &R::normalWallC4_m, kMm, 0.2, 20},
+    {"normal_swallow", "ues_diameter_mm", &R::normalUes_m, kMm, 1, 40},
+    {"normal_swallow", "ues_open_s", &R::normalUesOpen_s, kOne, 0.05, 5},
 
     {"gap_rule", "sealed_ratio", &R::sealedRatio, kOne, 0, 1, kBase},
     {"gap_rule", "sealed_mm", &R::sealed_m, kMm, 0, 5, "tongue_base_gap"},
@@ -61,6 +67,13 @@ constexpr RuleField kFields[] = {
     {"locations", "pyriform_end_mm", &R::pyriformEnd_m, kMm, 100, 180},
     {"locations", "pyriform_u", &R::pyriformU, kOne, 0.1, 1},
 
+    {"airway", "least_particles", &R::leastParticles, kOne, 1, 100},
+    {"airway", "folds_within_mm", &R::foldsWithin_m, kMm, 0, 10},
+
+    {"component_2", "beside_share", &R::heldBeside, kOne, 0, 1, "held_beside"},
+    {"component_2", "past_share", &R::heldPast, kOne, 0, 1, "held_past_ramus"},
+    {"component_2", "most_past_share", &R::heldMostPast, kOne, 0, 1, "held_past_ramus"},
+
     {"component_4", "contact_gap_mm", &R::contactGap_m, kMm, 0.2, 5},
     {"component_4", "centroid_low_pass_hz", &R::lowPass_Hz, kOne, 1, 15},
     {"component_4", "centroid_until_share", &R::centroidUntilShare, kOne, 0.1, 1},
@@ -83,6 +96,13 @@ constexpr RuleField kFields[] = {
     {"component_4", "brisk_mm_per_s", &R::brisk_ms, kMm, 1, 500, "front_speed"},
     {"component_4", "delayed_s", &R::delayed_s, kOne, 0.1, 20, "initial_delay"},
 
+    {"component_6", "ramus_until_mm", &R::headOral_m, kMm, 60, 150, "bolus_head_at_hyb"},
+    {"component_6", "vallecula_until_mm", &R::headVallecula_m, kMm, 80, 180, "bolus_head_at_hyb"},
+    {"component_6", "rim_until_mm", &R::headRim_m, kMm, 90, 200, "bolus_head_at_hyb"},
+    {"component_6", "wait_s", &R::initiationWait_s, kOne, 1, 30},
+
+    {"component_7", "contrast_share", &R::nasalShare, kOne, 0, 1, "nasopharynx_most"},
+
     {"component_8", "epiglottis_horizontal_deg", &R::horizontal_rad, kDeg, 45, 135},
     {"component_8", "epiglottis_horizontal_within_deg", &R::horizontalWithin_rad, kDeg, 1, 45},
     {"component_8", "epiglottis_tie_deg", &R::epiglottisTie_rad, kDeg, 0, 20},
@@ -94,6 +114,22 @@ constexpr RuleField kFields[] = {
     {"component_8", "vestibule_shut_ratio", &R::vestibuleShut, kOne, 0, 1, kGap},
     {"component_8", "vestibule_half_ratio", &R::vestibuleHalf, kOne, 0, 1, kGap},
 
+    {"component_9", "full_ratio", &R::hyoidFull, kOne, 0, 2, "hyoid_anterior_ratio"},
+    {"component_9", "none_ratio", &R::hyoidNone, kOne, 0, 2, "hyoid_anterior_ratio"},
+
+    {"component_10", "inverted_deg", &R::inverted_rad, kDeg, 60, 180, "epiglottis_angle_max"},
+    {"component_10", "turned_deg", &R::turned_rad, kDeg, 20, 120, "epiglottis_angle_max"},
+
+    {"component_11", "narrow_ratio", &R::vestibuleNarrow, kOne, 0, 1, "vestibule_narrowest"},
+
+    {"component_12", "wall_c2_mm", &R::wallC2_m, kMm, 80, 160},
+    {"component_12", "wall_c3_mm", &R::wallC3_m, kMm, 80, 160},
+    {"component_12", "wall_c4_mm", &R::wallC4_m, kMm, 80, 160},
+    {"component_12", "full_ratio", &R::waveFull, kOne, 0, 2, kWave},
+    {"component_12", "none_ratio", &R::waveNone, kOne, 0, 2, kWave},
+    {"component_12", "slowest_mm_per_s", &R::waveSlowest_ms, kMm, 10, 1000, "wave_crest_speed"},
+    {"component_12", "fastest_mm_per_s", &R::waveFastest_ms, kMm, 10, 2000, "wave_crest_speed"},
+
     {"component_13", "walls_top_mm", &R::wallTop_m, kMm, 60, 150},
     {"component_13", "walls_end_mm", &R::wallEnd_m, kMm, 100, 180},
     {"component_13", "best_height_mm", &R::bestHeight_m, kMm, 2, 60},
@@ -104,6 +140,15 @@ constexpr RuleField kFields[] = {
     {"component_13", "pouch_mm", &R::pouch_m, kMm, 0.2, 20, "pouch"},
     {"component_13", "residual_width_ratio", &R::residualWidth, kOne, 0, 1, "residual_width"},
     {"component_13", "shortening_least_ratio", &R::shorteningLeast, kOne, 0, 1, "shortening_ratio"},
+
+    {"component_14", "diameter_full_ratio", &R::uesFull, kOne, 0, 2, "ues_diameter_ratio"},
+    {"component_14", "diameter_narrow_ratio", &R::uesNarrow, kOne, 0, 2, "ues_diameter_ratio"},
+    {"component_14", "diameter_none_ratio", &R::uesNone, kOne, 0, 2, "ues_diameter_ratio"},
+    {"component_14", "open_long_ratio", &R::uesLong, kOne, 0, 2, "ues_open_ratio"},
+    {"component_14", "open_brief_ratio", &R::uesBrief, kOne, 0, 2, "ues_open_ratio"},
+    {"component_14", "held_some_share", &R::heldUpSome, kOne, 0, 1, "ues_held_up"},
+    {"component_14", "held_much_share", &R::heldUpMuch, kOne, 0, 1, "ues_held_up"},
+    {"component_14", "held_all_share", &R::heldUpAll, kOne, 0, 1, "ues_held_up"},
 
     {"component_15", "base_height_mm", &R::baseHeight_m, kMm, 4, 60},
     {"component_15", "most_retracted_within_mm", &R::baseTie_m, kMm, 0, 5},

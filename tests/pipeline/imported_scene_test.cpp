@@ -39,7 +39,8 @@ TEST_F(ImportedScene, BonesFollowTheSwallowAndAreDrawnInFourViews) {
   const auto drawn = render(options, notes);
   ASSERT_TRUE(drawn) << drawn.error().text();
   for (const std::string& view : options.views) {
-    auto clip = video::VideoReader::open(options.out / ("c04/c04-s0-none-" + view + ".mp4"));
+    auto clip =
+        video::VideoReader::open(options.out / ("c04/rejected/c04-s0-none-" + view + ".mp4"));
     ASSERT_TRUE(clip) << clip.error().text();
     auto frame = (*clip)->next();
     ASSERT_TRUE(frame && *frame) << view;

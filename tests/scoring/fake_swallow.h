@@ -24,7 +24,7 @@ inline const ScoringRules& testRules() {
 struct FakeSwallow {
   double duration_s = 3.2, fps = 30;
   double cue_s = 0;
-  std::vector<double> cues_s;
+  std::vector<double> cues_s = {};
   int particles = 200;  ///< 0: no bolus
   double stationStep_m = 1.5 * kMm, length_m = 195 * kMm;
   std::function<double(double s_m, double t_s)> gap_m = [](double, double) { return 8 * kMm; };
