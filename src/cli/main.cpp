@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
       {cli::kImport, pipeline::importMeshes},
       {cli::kList, pipeline::list},
       {cli::kCheck, pipeline::check},
+      {cli::kConfusion, pipeline::confusion},
       {cli::kVerify, verify::verify},
   };
   return cli::run({argv + std::min(argc, 1), argv + argc}, data ? data : SWALLOWCLIP_SOURCE_DIR,

@@ -177,11 +177,13 @@ constexpr CommandRow kCommands[] = {
     {kImport, "import", "Make a scene from meshes of one's own"},
     {kList, "list", "Show what can be chosen"},
     {kCheck, "check", "Check scene, swallow, bolus and preset files"},
+    {kConfusion, "confusion",
+     "Simulate every built-in score; print intended against measured scores"},
     {kVerify, "verify", "Run the fluid solver on cases with known answers"},
 };
 
 constexpr OptionRow kOptions[] = {
-    {"--component", "N", "Component to show, 1 to 17 or its word", kSwallow, 0, false,
+    {"--component", "N", "Component to show, 1 to 17 or its word", kSwallow | kConfusion, 0, false,
      applyComponent},
     {"--score", "0|1|2|3|4|all", "Score to show, several with commas", kSwallow, 0, false,
      applyScore},
@@ -209,8 +211,8 @@ constexpr OptionRow kOptions[] = {
      applyText<&RunOptions::history>},
     {"--out", "DIR", "Folder for results (default output)", kPictures | kExport | kImport, kImport,
      false, applyText<&RunOptions::out>},
-    {"--jobs", "N", "Threads to use (default: all processors)", kSwallow | kDraw | kVerify, 0,
-     false, applyJobs},
+    {"--jobs", "N", "Threads to use (default: all processors)",
+     kSwallow | kDraw | kVerify | kConfusion, 0, false, applyJobs},
     {"--checkpoint", "FILE",
      "Keep the state of the run in FILE, and go on from it when a run was interrupted", kSimulate,
      0, false, applyText<&RunOptions::checkpoint>},

@@ -21,6 +21,7 @@ enum CommandBit : unsigned {
   kList = 64,
   kCheck = 128,
   kVerify = 256,
+  kConfusion = 4096,
 };
 
 struct CommandRow {
