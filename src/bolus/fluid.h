@@ -21,7 +21,7 @@ struct Fluid {
   double consistency_Pasn = 0;  ///< K of power law and Herschel-Bulkley
   double index = 1;             ///< n of power law, Herschel-Bulkley and Carreau
   double yield_Pa = 0;          ///< Herschel-Bulkley
-  double eta0_Pas = 0, etaInf_Pas = 0.003, lambda_s = 10;  ///< Carreau (clinical-reference 4)
+  double eta0_Pas = 0, etaInf_Pas = 0.003, lambda_s = 10;   ///< Carreau (clinical-reference 4)
   double minViscosity_Pas = 0.002, maxViscosity_Pas = 100;  ///< clip (clinical-reference 4)
 
   /// "" when every number is usable, else what is wrong with which field.

@@ -29,8 +29,16 @@ constexpr double kWorstLeft = 0.02;
 // every step, however short, it would do so at a speed that shortens the next step, and so on to
 // 100 m/s. Assumed (0.05 to 0.2 ms).
 constexpr double kCorrection_s = 1e-4;
+// The rate solve goes on until it leaves this share of what it was to remove, or its tolerance if
+// that is less; and no further than that share of its tolerance. Fluid driven through a long gap
+// needs it: the compression that drives it is small beside what pressure and friction exchange.
+constexpr double kRelative = 2e-3, kFloor = 1e-4;  // assumed (1e-3 to 5e-3; 1e-5 to 1e-3)
+// Density that lacks less than this lies between particles that are in disorder, not in an opening:
+// of it velocities may fill the less, the smaller it is. Else a fluid at rest would fall into it
+// every step, and its pressure carry that much less. Assumed (0.02 to 0.1).
+constexpr double kOpening = 0.05;
 constexpr int kDensityCap = 150;     // iterations, assumed (100 to 300)
-constexpr int kRateCap = 50;         // assumed (20 to 100): leftovers go to the density solve
+constexpr int kRateCap = 500;        // assumed (200 to 1000): a long gap of 150 spacings needs 200
 constexpr float kNoLimit = 1e30f;    // m^2/s^2
 constexpr int kLeastIterations = 2;  // Bender & Koschier 2015
 }  // namespace
@@ -79,8 +87,8 @@ void Projection::densityRate(const Flow& f, const std::vector<Vec3>& v) {
     sweep.run(begin, end);
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      source_[i] +=
-          static_cast<float>(kWallMirror * (v[p].dot(f.walls[p].gradLambda) - f.walls[p].flux_s));
+      source_[i] += static_cast<float>(v[p].dot(Vec3(wall_.x[i], wall_.y[i], wall_.z[i])) -
+                                       kWallMirror * f.walls[p].flux_s);
     }
   });
 }
@@ -117,6 +125,9 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double
                  x_.data(),
                  y_.data()};
   std::vector<StepSweep::Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
+  double asked = 0;  // mean size of what is to be removed
+  for (int i = 0; i < n; ++i) asked += std::abs(source_[i]) / n * dt_s * dt_s;
+  tolerance = std::clamp(kRelative * asked, kFloor * tolerance, tolerance);
   double theta = 1;
   for (report.iterations = 1;; ++report.iterations) {
     const double next = (1 + std::sqrt(1 + 4 * theta * theta)) / 2;
@@ -162,9 +173,8 @@ void Projection::accelerate(const Flow& f, double dt_s, std::vector<Vec3>& v) {
     gradient.run(begin, end);
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      Vec3 a =
-          -Vec3(&force_[3 * i]) - kWallMirror * static_cast<double>(x_[i]) * f.walls[p].gradLambda;
       const Vec3 w(wall_.x[i], wall_.y[i], wall_.z[i]);
+      Vec3 a = -Vec3(&force_[3 * i]) - static_cast<double>(x_[i]) * w;
       a += along_[i] * a - across_[i] * a.dot(w) * w;
       v[p] += dt_s * mobility_[i] * a;
     }
@@ -173,14 +183,13 @@ void Projection::accelerate(const Flow& f, double dt_s, std::vector<Vec3>& v) {
 
 void Projection::pushByLastPressure(const Flow& f, double dt_s, std::vector<Vec3>& v) {
   for (int i = 0; i < f.count(); ++i)
-    x_[i] = diagonal_[i] > 0 ? static_cast<float>(densityK_[f.particle(i)]) : 0.f;
+    x_[i] = diagonal_[i] > 0 ? static_cast<float>(rateK_[f.particle(i)]) : 0.f;
   accelerate(f, dt_s, v);
 }
 
 void Projection::stress_m2s2(const Flow& f, std::vector<double>& stress) {
   stress.assign(densityK_.size(), 0.0);
-  for (int i = 0; i < f.count(); ++i)
-    x_[i] = static_cast<float>(densityK_[f.particle(i)] + rateK_[f.particle(i)]);
+  for (int i = 0; i < f.count(); ++i) x_[i] = static_cast<float>(rateK_[f.particle(i)]);
   const StressSweep sweep{f.lists(), f.neighbours.r.data(), x_.data(), source_.data()};
   f.sweep([&](int begin, int end, int) {
     sweep.run(begin, end);
@@ -202,7 +211,8 @@ ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<dou
   densityRate(f, v);
   // what is still below rest density may close up; nothing is pulled apart
   for (int i = 0; i < f.count(); ++i) {
-    const double open = full ? 0 : std::max(0.0, 1 - density[f.particle(i)]) / dt_s;
+    const double room = std::max(0.0, 1 - density[f.particle(i)]);
+    const double open = full ? 0 : room * std::min(1.0, room / kOpening) / dt_s;
     source_[i] = static_cast<float>((source_[i] - open) / dt_s);
   }
   takeMeanOff(f.count());

@@ -4,8 +4,8 @@
 //   a_i = (-V sum (k_i + k_j) gradW_ij - 2 k_i grad lambda_i) / (1 + drag_i)
 //   D_i(v) = V sum (v_i - v_j).gradW_ij + 2 (v_i.grad lambda_i - flux_i)
 // solved with k >= 0 by projected gradient steps, scaled by the diagonal and with momentum
-// (Nesterov 1983; restarted as O'Donoghue & Candes 2015): 3 to 14 of them a step. Walls enter nowhere
-// else. Inner loops in single precision; what changes a velocity is summed in double from
+// (Nesterov 1983; restarted as O'Donoghue & Candes 2015): 3 to 14 of them a step. Walls enter
+// nowhere else. Inner loops in single precision; what changes a velocity is summed in double from
 // antisymmetric terms, so that momentum is kept.
 #pragma once
 #include <cstdint>

@@ -8,6 +8,7 @@
 #include "bolus/closed_walls.h"
 #include "bolus/contact_response.h"
 #include "bolus/projection.h"
+#include "bolus/shifting.h"
 #include "bolus/solver.h"
 #include "bolus/viscosity.h"
 #include "bolus/wcsph.h"
@@ -55,7 +56,7 @@ struct Solver::Impl {
   void project(double dt_s, Substep& report);
   void pushExplicitly(double dt_s, Substep& report);
   void move(double dt_s, Substep& report);
-  int clampSpeeds(double dt_s);
+  int clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const;
   void measure(Substep& s);
   std::string wallsAt(int particle) const;
 
@@ -84,7 +85,9 @@ struct Solver::Impl {
   std::vector<int> takenUp;                    // films that became fluid just now
   std::vector<std::uint8_t> active;            // takes part in the pressure solve
   Neighbours neighbours;
+  std::vector<Vec3> moving;  // velocities, and what the density left above rest adds to them
   Projection projection;
+  Shifting shifting;
   Viscosity viscosity;
   Wcsph wcsph;
 

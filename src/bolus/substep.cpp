@@ -103,10 +103,10 @@ void Solver::Impl::chooseSound(double speed_ms) {
 }
 
 // A particle must not outrun the contacts it knows.
-int Solver::Impl::clampSpeeds(double dt_s) {
+int Solver::Impl::clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const {
   const double limit = kLongestMove * def.spacing_m / dt_s;
   int clamped = 0;
-  for (Vec3& v : particles.velocities) {
+  for (Vec3& v : velocities) {
     const double speed = v.norm();
     if (speed <= limit) continue;
     v *= limit / speed;
@@ -115,28 +115,29 @@ int Solver::Impl::clampSpeeds(double dt_s) {
   return clamped;
 }
 
-// The projections of DFSPH, with gravity and viscosity between them.
+// The projections of DFSPH, with gravity and viscosity before them. Velocities become free of
+// compression; what density is left above rest moves particles apart without a part in velocity.
 void Solver::Impl::project(double dt_s, Substep& report) {
   std::vector<Vec3>& v = particles.velocities;
   const Flow flow{neighbours, walls, pool};
   projection.prepare(flow, {});
-  report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
   for (std::size_t i = 0; i < v.size(); ++i)
     if (active[i]) v[i] += dt_s * def.gravity_ms2;
   // Friction acts on gravity and the last pressure together (incremental projection, Guermond et
   // al. 2006, sec. 3.2). On gravity alone walls would carry a share of it every step and pressure
   // only the rest: 6 % too little in a 10 mm wide column of 1 Pa.s at steps of 1 ms, half or less
   // in a squeezed gap with 12 nu dt / h^2 = 1.
-  // Not in full rooms: their pressures flicker with every layer that slides over another, and
-  // friction would spread that (power law between plates: 2 % without, 11 % with it).
-  if (!def.full) projection.pushByLastPressure(flow, dt_s, v);
+  projection.pushByLastPressure(flow, dt_s, v);
   report.viscosityIterations = viscosity
                                    .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas},
                                           dt_s, kernel.support_m(), v)
                                    .iterations;
   if (settlingViscosity_Pas == 0) projection.prepare(flow, viscosity.wallDrag());
-  if (!def.full) projection.pushByLastPressure(flow, -dt_s, v);
-  report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, v);
+  projection.pushByLastPressure(flow, -dt_s, v);
+  report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
+  moving = v;
+  shifting.apply(flow, particles.densityRatio, def.spacing_m, dt_s, v, moving);
+  report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
   projection.stress_m2s2(flow, particles.pressure_Pa);
   for (double& p : particles.pressure_Pa) p *= def.fluid.density_kgm3;
 }
@@ -160,7 +161,7 @@ void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
 Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
   Substep report;
   if (compressible())
-    pushExplicitly(dt_s, report);
+    pushExplicitly(dt_s, report), moving = particles.velocities;
   else
     project(dt_s, report);
   move(dt_s, report);
@@ -170,20 +171,23 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
 
 void Solver::Impl::move(double dt_s, Substep& report) {
   std::vector<Vec3>& v = particles.velocities;
-  report.clamped = clampSpeeds(dt_s);
+  report.clamped = clampSpeeds(dt_s, v) + clampSpeeds(dt_s, moving);
   carried.resize(v.size());
   for (std::size_t i = 0; i < v.size(); ++i) {
     if (particles.state[i] == State::swallowed) continue;
     const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
     carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
-    if (particles.state[i] == State::film) v[i] = filmVelocity_ms(static_cast<int>(i));
+    if (particles.state[i] == State::film) v[i] = moving[i] = filmVelocity_ms(static_cast<int>(i));
     clampVelocity(contacts[i], def.spacing_m, dt_s, v[i]);
-    if (!v[i].allFinite()) {  // said by checkStep; until then it must not get into the grids
+    clampVelocity(contacts[i], def.spacing_m, dt_s, moving[i]);
+    if (!v[i].allFinite() ||
+        !moving[i].allFinite()) {  // said by checkStep; until then it must not get into the grids
       v[i].setZero();
+      moving[i].setZero();
       report.broken = true;
     }
     report.maxSpeed_ms = std::max(report.maxSpeed_ms, v[i].norm());
-    particles.positions[i] += dt_s * v[i];
+    particles.positions[i] += dt_s * moving[i];
   }
   report.rescued = meetWalls(time_s + (frozen ? 0 : dt_s));
 }

@@ -19,7 +19,7 @@ constexpr double kExplicitShare = 0.0625;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
 
-double shearRate_s(const Flow& f, const std::vector<Vec3>& v, int i) {
+Mat3 velocityGradient_s(const Flow& f, const std::vector<Vec3>& v, int i) {
   const Neighbours& nb = f.neighbours;
   const int p = f.particle(i);
   Mat3 gradient = Mat3::Zero();
@@ -33,6 +33,9 @@ double shearRate_s(const Flow& f, const std::vector<Vec3>& v, int i) {
   if (w.friction > 0 && w.area > 0 && steep > 0)
     gradient += std::min(w.lambda + steep * w.area / w.friction, 1.0) / (w.area * steep) *
                 (w.frictionVelocity - w.friction * v[p]) * w.gradLambda.transpose();
+  return gradient;
+}
+double shearRate_s(const Mat3& gradient) {
   const Mat3 d = 0.5 * (gradient + gradient.transpose());
   return std::sqrt(2 * d.squaredNorm());
 }
@@ -168,7 +171,7 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
       viscosity_[i] = scheme.override_Pas > 0 ? scheme.override_Pas
                       : fluid.model == RheologyModel::newtonian
                           ? fluid.viscosity_Pas
-                          : apparentViscosity_Pas(fluid, shearRate_s(f, v, i));
+                          : apparentViscosity_Pas(fluid, shearRate_s(velocityGradient_s(f, v, i)));
   });
   assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
   for (int i = 0; i < n; ++i) {

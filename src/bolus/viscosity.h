@@ -47,6 +47,8 @@ class Viscosity {
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
 
-/// Shear rate sqrt(2 D:D) (1/s) at a slot, walls included.
-double shearRate_s(const Flow& flow, const std::vector<Vec3>& velocities, int slot);
+/// dv_a / dx_b (1/s) at a slot, walls included.
+Mat3 velocityGradient_s(const Flow& flow, const std::vector<Vec3>& velocities, int slot);
+/// sqrt(2 D:D) (1/s) of it.
+double shearRate_s(const Mat3& velocityGradient_s);
 }  // namespace swallowclip::bolus
