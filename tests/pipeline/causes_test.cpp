@@ -73,7 +73,8 @@ TEST_F(Causes, WithoutGravityMostStillPasses) {
 }
 
 TEST_F(Causes, ALateLarynxLetsThinInAndLessHoney) {
-  const std::vector<TrackSetting> late{{"arytenoid", "delay_s", 0.6}};
+  const std::vector<TrackSetting> late{{"arytenoid", "delay_s", 0.6},
+                                       {"vocal_folds", "delay_s", 0.6}};
   EXPECT_LE(mostInLarynx(swallow("thin")), 1);
   const int thin = mostInLarynx(swallow("thin", late)),
             honey = mostInLarynx(swallow("honey", late));
