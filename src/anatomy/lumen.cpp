@@ -122,11 +122,16 @@ LumenSheets Lumen::evaluate(const LumenPose& pose) const {
   std::vector<double> rowS(rows_);
   for (int r = 0; r < rows_; ++r) rowS[r] = s(r);
   const Curve bulge(rowS, pose.bulge_m), sigmaF(rowS, pose.sigmaF_m);
+  const std::vector<double> still(rowS.size(), 0.0);
+  const Curve leftOut(rowS, pose.leftOut_m.empty() ? still : pose.leftOut_m);
+  const Curve rightOut(rowS, pose.rightOut_m.empty() ? still : pose.rightOut_m);
   const auto fixedPoint = [&](double sMaterial, double uAt, Vec3* normal) {
     Vec3 nrm;
     Vec3 p = midline(sigmaF(sMaterial), pose.velumRaise, &nrm);
     p += nrm * (def_.arch(sMaterial) * archShape(uAt) + bulge(sMaterial) * (1 - uAt * uAt));
-    p.x() += def_.halfWidth(sMaterial) * uAt;
+    // A wall that bows takes the tissue beside it along, the midline stays.
+    const double out_m = uAt > 0 ? leftOut(sMaterial) : rightOut(sMaterial);
+    p.x() += def_.halfWidth(sMaterial) * uAt + out_m * uAt * uAt * uAt;
     if (normal) *normal = nrm;
     return p;
   };

@@ -41,9 +41,11 @@ struct LumenPose {
   double velumRaise = 0;         ///< 0 hanging .. 1 sealed
   std::vector<double> sigmaF_m;  ///< [row] where the tissue of row s lies along the rest path
   std::vector<double> sigmaM_m;
-  std::vector<double> bulge_m;        ///< [row] how far F has moved along n
-  std::vector<double> gap_m;          ///< [row * columns] full gap field
-  std::vector<double> shear_m;        ///< [row * columns] slip of M down the path (pocket floors)
+  std::vector<double> bulge_m;  ///< [row] how far F has moved along n
+  std::vector<double> gap_m;    ///< [row * columns] full gap field
+  std::vector<double> shear_m;  ///< [row * columns] slip of M down the path (pocket floors)
+  /// [row] how far the lateral walls have moved outward, patient left and right; empty: not at all.
+  std::vector<double> leftOut_m, rightOut_m;
   Vec3 larynxShift_m = Vec3::Zero();  ///< displacement of the laryngeal frame
   double inletOpen = 1;               ///< AP openness of the vestibule, 0 shut .. 1 rest
   double glottisOpen = 1;             ///< lateral openness of the vocal folds

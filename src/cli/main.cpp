@@ -12,11 +12,17 @@ int main(int argc, char** argv) {
   // Scenes, presets and shaders: beside the sources, unless a package says otherwise.
   const char* data = std::getenv("SWALLOWCLIP_DATA");
   const cli::Handlers handlers{
-      {cli::kRender, pipeline::render},       {cli::kSimulate, pipeline::simulate},
-      {cli::kSweep, pipeline::sweep},         {cli::kMeasure, pipeline::measure},
-      {cli::kDraw, pipeline::draw},           {cli::kExport, pipeline::exportHistory},
-      {cli::kImport, pipeline::importMeshes}, {cli::kList, pipeline::list},
-      {cli::kCheck, pipeline::check},         {cli::kVerify, verify::verify},
+      {cli::kRender, pipeline::render},
+      {cli::kSimulate, pipeline::simulate},
+      {cli::kSweep, pipeline::sweep},
+      {cli::kMeasure, pipeline::measure},
+      {cli::kDraw, pipeline::draw},
+      {cli::kExport, pipeline::exportHistory},
+      {cli::kImport, pipeline::importMeshes},
+      {cli::kList, pipeline::list},
+      {cli::kCheck, pipeline::check},
+      {cli::kConfusion, pipeline::confusion},
+      {cli::kVerify, verify::verify},
   };
   return cli::run({argv + std::min(argc, 1), argv + argc}, data ? data : SWALLOWCLIP_SOURCE_DIR,
                   handlers);

@@ -143,6 +143,9 @@ Result<void> applyText(const Words& words, RunOptions& options) {
   return {};
 }
 
+Result<void> applyVolume(const Words& words, RunOptions& options) {
+  return store(number("--volume-ml", words[0], 1, 20), options.volume_mL);
+}
 Result<void> applySpacing(const Words& words, RunOptions& options) {
   // Below 0.5 mm 5 mL are 40 000 particles: days, not minutes. Above 4 mm they are 78.
   return store(number("--spacing-mm", words[0], 0.5, 4), options.spacing_mm);
@@ -199,16 +202,20 @@ constexpr CommandRow kCommands[] = {
     {kImport, "import", "Make a scene from meshes of one's own"},
     {kList, "list", "Show what can be chosen"},
     {kCheck, "check", "Check scene, swallow, bolus and preset files"},
+    {kConfusion, "confusion",
+     "Simulate every built-in score; print intended against measured scores"},
     {kVerify, "verify", "Run the fluid solver on cases with known answers"},
 };
 
 constexpr OptionRow kOptions[] = {
-    {"--component", "N", "Component to show, 1 to 17 or its word", kSwallow, 0, false,
+    {"--component", "N", "Component to show, 1 to 17 or its word", kSwallow | kConfusion, 0, false,
      applyComponent},
     {"--score", "0|1|2|3|4|all", "Score to show, several with commas", kSwallow, 0, false,
      applyScore},
     {"--bolus", "NAME|FILE|none", "Bolus (default thesis-honey)", kSwallow, 0, false,
      applyText<&RunOptions::bolus>},
+    {"--volume-ml", "ML", "Volume of the bolus, 1 to 20 (default 5)", kSwallow, 0, false,
+     applyVolume},
     {"--views", "LIST", "Views with commas (default oblique,ap,si)", kPictures, 0, false,
      applyViews},
     {"--scene", "NAME|DIR", "Anatomy (default adult)", kSwallow, 0, false,
@@ -235,8 +242,8 @@ constexpr OptionRow kOptions[] = {
      applyText<&RunOptions::history>},
     {"--out", "DIR", "Folder for results (default output)", kPictures | kExport | kImport | kSweep,
      kImport, false, applyText<&RunOptions::out>},
-    {"--jobs", "N", "Threads to use (default: all processors)", kSwallow | kDraw | kVerify, 0,
-     false, applyJobs},
+    {"--jobs", "N", "Threads to use (default: all processors)",
+     kSwallow | kDraw | kVerify | kConfusion, 0, false, applyJobs},
     {"--checkpoint", "FILE",
      "Keep the state of the run in FILE, and go on from it when a run was interrupted", kSimulate,
      0, false, applyText<&RunOptions::checkpoint>},

@@ -22,6 +22,7 @@ enum CommandBit : unsigned {
   kCheck = 128,
   kVerify = 256,
   kSweep = 4096,
+  kConfusion = 8192,
 };
 
 struct CommandRow {

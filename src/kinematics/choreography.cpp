@@ -14,7 +14,12 @@ constexpr double kSidesLead_m = 10e-3;     // lateral walls shut ahead of the mi
 constexpr double kLarynxForwardGap = 1.0;  // share of anterior larynx travel that opens the lumen
 constexpr double kInvertedTip_m = 0.114;   // where the epiglottis meets the arytenoids; assumed
 constexpr double kArytenoidTilt_rad = 0.35;  // 20 degrees forward at closure; assumed 15-30
-const Vec3 kCricoarytenoidJoint_m(0, 28e-3, -96e-3);  // assumed, of the default scene
+// What is left open behind the contact front. Zones along s: tongue base, lateral walls.
+constexpr double kSideSlit_m =
+    5e-3;  // gap beside a lateral wall that does not come in; assumed 3-7
+constexpr double kPouchAt_m = 0.118;  // near the thyrohyoid membrane; clinical-reference 3
+constexpr double kPouchHalfHeight_m = 4e-3, kPouchGap_m = 4e-3;  // 8 mm tall; gap assumed 2-5
+const Vec3 kCricoarytenoidJoint_m(0, 28e-3, -96e-3);             // assumed, of the default scene
 
 // Map of [0, end] onto itself: the given knots inside, the identity before the first one. Knots
 // close together below it keep the curve's bend from reaching back to the palate.
@@ -42,6 +47,11 @@ double smoothMax(std::initializer_list<double> values) {
   }
   return std::sqrt(std::sqrt(sum));
 }
+
+double pouchHeight(double s) {
+  return plateau(s, kPouchAt_m - kPouchHalfHeight_m, kPouchAt_m - 1e-3, kPouchAt_m + 1e-3,
+                 kPouchAt_m + kPouchHalfHeight_m);
+}
 }  // namespace
 
 double Track::at(double tau) const {
@@ -63,6 +73,9 @@ const std::vector<TrackKind>& trackKinds() {
                                             {"larynx_anterior", true}, {"arytenoid", false},
                                             {"epiglottis", false},     {"shortening", true},
                                             {"ppw_bulge", true},       {"ues", true},
+                                            {"tongue_base", false},    {"wall_left", false},
+                                            {"wall_right", false},     {"pouch_left", true},
+                                            {"pouch_right", true},     {"oral_return", false},
                                             {"tongue_return", false},  {"pharynx_return", false}};
   return kinds;
 }
@@ -129,9 +142,40 @@ double Choreography::chamber(double s, double u, double tau) const {
 }
 
 double Choreography::release(double s, double tau) const {
-  const double tongue = track("tongue_return", tau), pharynx = track("pharynx_return", tau);
-  const double blend = smoothstep((s - 0.098) / 0.02);
-  return (1 - blend) * tongue + blend * pharynx;
+  const double tongue = track("tongue_return", tau);
+  const double mouth = smoothstep((0.080 - s) / 0.014), pharynx = smoothstep((s - 0.098) / 0.02);
+  return tongue + mouth * (track("oral_return", tau) - tongue) +
+         pharynx * (track("pharynx_return", tau) - tongue);
+}
+
+// Gap that stays once the contact front has passed: hollows of the tongue, what the tongue base
+// leaves of the way to the posterior wall, slits beside lateral walls that do not come in.
+double Choreography::leftBehind(double s, double u, double bulge, double tau) const {
+  const double x = u * lumen_.def().halfWidth(s), au = std::abs(u);
+  double hollow = 0;
+  for (const Hollow& h : def_.hollows) {
+    const double q = std::min(1.0, std::abs(x - h.centre_m) / h.halfWidth_m);
+    const double edge = std::min(6e-3, (h.end_m - h.start_m) / 3);
+    hollow = std::max(hollow, h.depth_m * (1 - q * q * q) *
+                                  plateau(s, h.start_m, h.start_m + edge, h.end_m - edge, h.end_m));
+  }
+  const double away = std::max(0.0, restPosture(s, u) - bulge * (1 - u * u));
+  const double tongueBase =
+      (1 - track("tongue_base", tau)) * away * plateau(s, 0.086, 0.092, 0.100, 0.106);
+  const double gain = track(u > 0 ? "wall_left" : "wall_right", tau);
+  const double slit = (1 - gain) * kSideSlit_m * plateau(s, 0.104, 0.114, 0.140, 0.150) *
+                      smoothstep((au - 0.12) / 0.3) * (1 - au * au);
+  const double pouch = std::min(1.0, track(u > 0 ? "pouch_left" : "pouch_right", tau) / 1e-3) *
+                       kPouchGap_m * pouchHeight(s) * smoothstep((au - 0.6) / 0.25) *
+                       (1 - au * au * au * au);
+  return smoothMax({hollow, tongueBase, slit, pouch});
+}
+
+// Outward travel of the lateral wall: gains below 0 bow it, pouches bulge out of it.
+double Choreography::wallOut(double s, double side, double tau) const {
+  const double gain = track(side > 0 ? "wall_left" : "wall_right", tau);
+  return std::max(0.0, -gain) * lumen_.def().halfWidth(s) * plateau(s, 0.100, 0.112, 0.138, 0.150) +
+         track(side > 0 ? "pouch_left" : "pouch_right", tau) * pouchHeight(s);
 }
 
 anatomy::LumenPose Choreography::lumenPose(double t) const {
@@ -188,12 +232,16 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
     const double share = folds ? along(s) : 0;
     const double from = folds ? s + closure * (kAbove_m + share * (kBelow_m - kAbove_m) - s) : s;
     const double back = release(from, tau);
+    p.leftOut_m.push_back(wallOut(s, 1, tau));
+    p.rightOut_m.push_back(wallOut(s, -1, tau));
     for (int c = 0; c < lumen_.columns(); ++c) {
       const double u = lumen_.u(c);
       const int i = lumen_.index(r, c);
       const double open = smoothstep((from - frontAt - sides_m * u * u) / shoulder_m);
       const auto gap = [&](double at) {
-        return open * chamber(at, u, tau) + (1 - open) * back * restPosture(at, u);
+        const double left = leftBehind(at, u, p.bulge_m.back(), tau);
+        const double closed_m = left + back * (smoothMax({left, restPosture(at, u)}) - left);
+        return open * chamber(at, u, tau) + (1 - open) * closed_m;
       };
       double gap_m = gap(s);
       if (folds && closure > 0)

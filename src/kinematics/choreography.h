@@ -30,6 +30,8 @@ class Choreography {
   double chamber(double s_m, double u, double tau_s) const;
   double restPosture(double s_m, double u) const;
   double release(double s_m, double tau_s) const;
+  double leftBehind(double s_m, double u, double bulge_m, double tau_s) const;
+  double wallOut(double s_m, double side, double tau_s) const;
 
   const anatomy::Lumen& lumen_;
   SwallowDef def_;

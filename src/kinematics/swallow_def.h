@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/curve.h"
+#include "core/vec.h"
 
 namespace swallowclip::kinematics {
 
@@ -20,6 +21,14 @@ struct Track {
   double at(double tau_s) const;
 };
 
+/// A place between tongue and palate where they do not meet: the gap that is left once the contact
+/// front has passed. Profile across as that of the dorsal groove.
+struct Hollow {
+  double start_m = 0, end_m = 0;         ///< along s
+  double centre_m = 0, halfWidth_m = 0;  ///< along x, patient left positive
+  double depth_m = 0;
+};
+
 struct SwallowDef {
   std::string name, title;
   int component = 0, score = -1;
@@ -27,11 +36,13 @@ struct SwallowDef {
   double bpm_s = 1.2;
   std::vector<double> cues_s{0};
   std::map<std::string, Track> tracks;
-  Curve front_m;              ///< tail of the lumen's contact front (m along s) over tau
-  double frontAmplitude = 1;  ///< 0: no wave at all
-  double volume_m3 = 5e-6;    ///< V0, the room of the held bolus follows it
-  double roomFactor = 1.2;    ///< held room / V0, DESIGN section 3: 1.15-1.3
+  Curve front_m;                  ///< tail of the lumen's contact front (m along s) over tau
+  double frontAmplitude = 1;      ///< 0: no wave at all
+  double volume_m3 = 5e-6;        ///< V0, the room of the held bolus follows it
+  Vec3 gravity_ms2{0, 0, -9.81};  ///< in the head's frame: upright
+  double roomFactor = 1.2;        ///< held room / V0, DESIGN section 3: 1.15-1.3
   double grooveStart_m = 4e-3, grooveEnd_m = 54e-3, grooveHalfWidth_m = 10.5e-3;
+  std::vector<Hollow> hollows;
   double rockAmplitude_m = 0, rockRate_hz = 1.2, rockCycles = 0, rockStart_s = 0;
 
   const Track& track(const std::string& key) const;

@@ -17,5 +17,8 @@ Result<void> exportHistory(const RunOptions& options, Progress& progress);
 Result<void> sweep(const RunOptions& options, Progress& progress);
 Result<void> importMeshes(const RunOptions& options, Progress& progress);
 Result<void> list(const RunOptions& options, Progress& progress);
+/// Simulates every built-in score and prints what was intended against what was measured; fails
+/// when one is not confirmed.
+Result<void> confusion(const RunOptions& options, Progress& progress);
 Result<void> check(const RunOptions& options, Progress& progress);
 }  // namespace swallowclip::pipeline

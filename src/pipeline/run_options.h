@@ -43,6 +43,7 @@ struct RunOptions {
   std::optional<TrackRange> range;  ///< sweep
   std::filesystem::path compare;    ///< history of the unchanged swallow, for --set
   std::string preset = "training";  ///< name in render_presets/, or a .json file
+  double volume_mL = 5;             ///< of the bolus, 1 to 20
   double spacing_mm = 2;            ///< particle spacing; 2 mm = 621 particles in 5 mL
   std::string solver = "dfsph";     ///< dfsph or wcsph
   std::filesystem::path out = "output";

@@ -103,7 +103,7 @@ Result<std::string> inputsHash(const RunOptions& o,
     all += sha256Hex(*text) + " " + f.filename().string() + "\n";
   }
   for (const TrackSetting& s : o.sets) all += fmt::format("{}.{}={}\n", s.track, s.key, s.value);
-  all += fmt::format("{} {} {}\n", o.bolus, o.spacing_mm, o.solver);
+  all += fmt::format("{} {} {} {}\n", o.bolus, o.volume_mL, o.spacing_mm, o.solver);
   return sha256Hex(all);
 }
 
@@ -139,15 +139,17 @@ Result<Moving> setInMotion(const LoadedScene& scene, const kinematics::SwallowDe
                 std::move(baked.landmarkNames)};
 }
 
-Result<bolus::Solver> startBolus(const RunOptions& o, const bolus::Fluid& fluid,
-                                 const bolus::WallMotion& walls, int threads) {
+Result<bolus::Solver> startBolus(const RunOptions& o, const kinematics::SwallowDef& swallow,
+                                 const bolus::Fluid& fluid, const bolus::WallMotion& walls) {
   bolus::BolusDef def;
   def.fluid = fluid;
   def.spacing_m = o.spacing_mm * kMetrePerMm;
+  def.volume_m3 = swallow.volume_m3;
+  def.gravity_ms2 = swallow.gravity_ms2;
   auto kind = bolus::solverFromName(o.solver);
   if (!kind) return std::unexpected(kind.error());
   def.solver = *kind;
-  bolus::Solver solver(def, walls, threads);
+  bolus::Solver solver(def, walls, o.jobs);
   if (auto seeded = solver.seed(0, {0, 0.066}); !seeded) return std::unexpected(seeded.error());
   if (auto relaxed = solver.relax(0); !relaxed) return std::unexpected(relaxed.error());
   return solver;
@@ -177,11 +179,14 @@ Result<kinematics::SwallowDef> loadSwallow(const RunOptions& o, int score,
       return usageError(
           path.string(),
           fmt::format("no swallow file for component {}, score {}", o.component, score),
-          "Component 4 is built in; for others write a swallow file and give it with --swallow.");
+          "Components 4, 5, 8, 13 and 15 are built in; for others write a swallow file and give it "
+          "with --swallow.");
   }
   if (file) *file = path;
   auto swallow = scene::loadSwallow(path);
   if (!swallow) return swallow;
+  constexpr double kCubicMetrePerMl = 1e-6;
+  swallow->volume_m3 = o.volume_mL * kCubicMetrePerMl;
   for (const TrackSetting& s : o.sets)
     if (auto set = scene::applySet(*swallow, fmt::format("{}.{}={}", s.track, s.key, s.value));
         !set)
@@ -235,7 +240,7 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
   walls.sealed = [&choreography](double t, int branch) { return choreography.sealed(t, branch); };
   std::optional<bolus::Solver> solver;
   if (o.hasBolus()) {
-    auto started = startBolus(o, fluid, walls, o.jobs);
+    auto started = startBolus(o, *swallow, fluid, walls);
     if (!started) return std::unexpected(started.error());
     solver.emplace(std::move(*started));
     h.bolus.particleVolume_m3 = solver->particleVolume_m3();

@@ -14,6 +14,7 @@ namespace {
 using kinematics::SwallowDef;
 using kinematics::Track;
 constexpr int kMaxBases = 4;
+constexpr double kMostGravity_ms2 = 20;
 
 struct TrackKey {
   const char* name;
@@ -72,6 +73,22 @@ void readTracks(const JsonNode& j, SwallowDef& d) {
   }
 }
 
+void readHollows(const JsonNode& j, SwallowDef& d) {
+  if (!j.has("hollows")) return;
+  d.hollows.clear();
+  for (const JsonNode& h : j.array("hollows")) {
+    kinematics::Hollow one;
+    one.start_m = h.number("start_mm", 0, 80) * kMetrePerMm;
+    one.end_m = h.number("end_mm", 0, 80) * kMetrePerMm;
+    one.centre_m = h.number("centre_mm", -18, 18, 0) * kMetrePerMm;
+    one.halfWidth_m = h.number("half_width_mm", 1, 18) * kMetrePerMm;
+    one.depth_m = h.number("depth_mm", 0, 15) * kMetrePerMm;
+    if (h.exists() && one.end_m - one.start_m < 3e-3)
+      h.fail("'end_mm' must be at least 3 mm beyond 'start_mm'", "s counts from the incisors.");
+    d.hollows.push_back(one);
+  }
+}
+
 Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
   auto file = JsonFile::load(path);
   if (!file) return std::unexpected(file.error());
@@ -99,6 +116,11 @@ Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
     j.fail("'cues_s' must begin with 0", "Time 0 is the cue.");
   if (j.has("front_s_mm")) d.front_m = readCurve(j, "front_s_mm", 1, kMetrePerMm);
   d.frontAmplitude = j.number("front_amplitude", 0, 1, d.frontAmplitude);
+  d.gravity_ms2 = j.vec3("gravity_ms2", d.gravity_ms2);
+  if (d.gravity_ms2.norm() > kMostGravity_ms2)
+    j.member("gravity_ms2")
+        .fail("more than twice the earth's gravity",
+              "Upright it is [0, 0, -9.81], lying on the back [0, 9.81, 0].");
   d.roomFactor = j.number("room_factor", 1.1, 1.6, d.roomFactor);
   d.grooveStart_m = j.number("groove_start_mm", 0, 40, d.grooveStart_m / kMetrePerMm) * kMetrePerMm;
   d.grooveEnd_m = j.number("groove_end_mm", 25, 70, d.grooveEnd_m / kMetrePerMm) * kMetrePerMm;
@@ -110,6 +132,7 @@ Result<SwallowDef> load(const std::filesystem::path& path, int depth) {
   d.rockCycles = j.integer("rock_cycles", 0, 20, static_cast<int>(d.rockCycles));
   d.rockStart_s = j.number("rock_start_s", 0, kTime, d.rockStart_s);
   readTracks(j, d);
+  readHollows(j, d);
   const double delay = j.number("later_delay_s", -2, kTime, 0);
   if (delay != 0)
     for (auto& [name, track] : d.tracks)

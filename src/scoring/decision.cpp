@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace swallowclip::scoring {
@@ -34,7 +35,9 @@ Decision decide(const Judge& judge, const ScoringRules& rules, std::string reaso
   if (!d.score) return d;
   for (const RuleField& field : ruleFields()) {
     if (!field.quantities) continue;
-    for (const double farthest : {kNearest, kFarthest}) {
+    // A cut stays inside its own range: no cut of a share can exclude all of it.
+    const double most = field.max * field.scale / (rules.*field.member) * (1 - kNearest);
+    for (const double farthest : {kNearest, std::clamp(most, 1.0, kFarthest)}) {
       const auto move = moveOf(judge, rules, field, d.score, farthest);
       if (!move || (d.margin && *d.margin <= *move)) continue;
       d.margin = move;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The promise, for every component-4 swallow: its bolus is conserved, and it measures as itself.
+// The promise, for every built-in swallow: its bolus is conserved, and it measures as itself.
 // Minutes long: ctest -L slow.
 #include <cmath>
 
@@ -50,15 +50,20 @@ void expectSoundSkin(const frame::SkinTrack& skin) {
   }
 }
 
-class Component4 : public test::Run,
-                   public testing::WithParamInterface<std::tuple<int, const char*>> {};
+struct Shown {
+  int component, score;
+  const char* bolus;
+};
 
-TEST_P(Component4, MeasuresAsItselfAndConservesTheBolus) {
-  const auto [score, bolus] = GetParam();
+class BuiltIn : public test::Run, public testing::WithParamInterface<Shown> {};
+
+TEST_P(BuiltIn, MeasuresAsItselfAndConservesTheBolus) {
+  const auto [component, score, bolus] = GetParam();
+  options.component = component;
   const auto run = swallow(options, score, bolus);
   ASSERT_TRUE(run);
-  ASSERT_TRUE(run->metrics.scores.at(4));
-  EXPECT_EQ(*run->metrics.scores.at(4), score);
+  ASSERT_TRUE(run->metrics.scores.at(component));
+  EXPECT_EQ(*run->metrics.scores.at(component), score);
   EXPECT_TRUE(run->metrics.labelConfirmed.value_or(false)) << run->metrics.labelReason;
   if (std::string_view(bolus) == "none") {
     expectSoundSkin(run->history.skin);
@@ -68,18 +73,22 @@ TEST_P(Component4, MeasuresAsItselfAndConservesTheBolus) {
   const frame::LedgerRow end = run->history.ledger.back();
   EXPECT_EQ(end.start, end.fluid + end.film + end.swallowed);
   EXPECT_EQ(end.escaped, 0);
+  const bool openLarynx = component == 8 && score >= 2;
   for (auto region : run->history.bolus.region.back()) {
-    EXPECT_NE(region, frame::Region::larynx);
+    EXPECT_TRUE(openLarynx || region != frame::Region::larynx);
     EXPECT_NE(region, frame::Region::nasopharynx);
   }
-  EXPECT_LE(run->history.meta.meanDensityError, 0.01);
+  EXPECT_LE(run->history.meta.meanDensityError, 0.003);
   EXPECT_LE(run->history.meta.shareAboveTenPercent, 0.01);
-  EXPECT_LE(run->history.meta.maxSpeed_ms, 3);
-  if (score == 4) {
+  if (!openLarynx) {
+    EXPECT_LE(run->history.meta.maxDensityError, 0.15);
+    EXPECT_LE(run->history.meta.maxSpeed_ms, 3);
+  }
+  if (score == 4 && component <= 5) {
     EXPECT_EQ(end.swallowed, 0);
     return;
   }
-  EXPECT_GE(end.swallowed, 0.95 * end.start);
+  if (component == 4 || score == 0) EXPECT_GE(end.swallowed, 0.95 * end.start);
   if (score != 0) return;
   EXPECT_GE(run->value("oral_transit"), 0.35);  // clinical-reference 2
   EXPECT_LE(run->value("oral_transit"), 1.54);
@@ -87,15 +96,26 @@ TEST_P(Component4, MeasuresAsItselfAndConservesTheBolus) {
   EXPECT_LE(run->value("pharyngeal_transit"), 1.19);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scores, Component4,
-                         testing::Combine(testing::Range(0, 5),
-                                          testing::Values("thesis-honey", "thin", "none")),
-                         [](const auto& named) {
-                           std::string name = fmt::format("{}_{}", std::get<0>(named.param),
-                                                          std::get<1>(named.param));
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+std::vector<Shown> allShown() {
+  std::vector<Shown> all;
+  const auto add = [&](int component, int highest, std::initializer_list<const char*> boluses) {
+    for (int score = 0; score <= highest; ++score)
+      for (const char* bolus : boluses) all.push_back({component, score, bolus});
+  };
+  add(4, 4, {"thesis-honey", "thin", "none"});
+  add(5, 4, {"thin", "honey"});
+  add(8, 3, {"thin", "honey"});
+  add(13, 3, {"nectar", "pudding"});
+  add(15, 4, {"thin", "honey"});
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scores, BuiltIn, testing::ValuesIn(allShown()), [](const auto& named) {
+  const Shown& s = named.param;
+  std::string name = fmt::format("c{:02}_s{}_{}", s.component, s.score, s.bolus);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 class Solvers : public test::Run {};
 
