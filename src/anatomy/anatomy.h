@@ -20,6 +20,8 @@ struct Structure {
   Carrier carrier = Carrier::skull;  ///< rigid ones only
   bool drawOnly = false;             ///< not closed: drawn, never used for mass or walls
   TriMesh mesh;
+  std::vector<std::string> follows =
+      {};  ///< soft parts outside the lumen: structures that carry it
 };
 
 struct Anatomy {

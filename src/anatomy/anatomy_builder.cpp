@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "anatomy/oral_mucosa.h"
 #include "anatomy/rigid_parts.h"
 
 namespace swallowclip::anatomy {
@@ -19,15 +20,17 @@ Result<void> addWhole(Anatomy& out, Structure structure, const Result<HalfSurfac
 
 Result<void> addPart(Anatomy& out, const AnatomyDef& def, const PartDef& part) {
   const auto half = sweepPart(part, def.profiles);
+  const bool rigid = part.follows.empty();
   if (!part.paired)
-    return addWhole(out, {part.name, part.material, true, part.carrier, false, {}}, half);
+    return addWhole(out, {part.name, part.material, rigid, part.carrier, false, {}, part.follows},
+                    half);
   if (!half) return std::unexpected(half.error());
   auto pair = half->leftAndRight(part.name);
   if (!pair) return std::unexpected(pair.error());
-  out.structures.push_back(
-      {part.name + "_L", part.material, true, part.carrier, false, std::move(pair->first)});
-  out.structures.push_back(
-      {part.name + "_R", part.material, true, part.carrierRight, false, std::move(pair->second)});
+  out.structures.push_back({part.name + "_L", part.material, rigid, part.carrier, false,
+                            std::move(pair->first), part.follows});
+  out.structures.push_back({part.name + "_R", part.material, rigid, part.carrierRight, false,
+                            std::move(pair->second), part.follows});
   return {};
 }
 
@@ -87,6 +90,18 @@ Result<Anatomy> buildRigidParts(const AnatomyDef& def) {
             addWhole(out, {arch.name, "enamel", true, arch.carrier, false, {}}, dentalArch(arch));
         !done)
       return std::unexpected(done.error());
+  if (!def.palate.mucosaName.empty())
+    if (auto done =
+            addWhole(out, {def.palate.mucosaName, "mucosa", true, Carrier::skull, false, {}},
+                     palateMucosa(def.palate));
+        !done)
+      return std::unexpected(done.error());
+  for (const DentalArchDef& arch : def.arches)
+    if (!arch.gumName.empty())
+      if (auto done =
+              addWhole(out, {arch.gumName, "mucosa", true, arch.carrier, false, {}}, gum(arch));
+          !done)
+        return std::unexpected(done.error());
   for (const PartDef& part : def.parts)
     if (auto done = addPart(out, def, part); !done) return std::unexpected(done.error());
   if (auto done = addLandmarks(out, def); !done) return std::unexpected(done.error());

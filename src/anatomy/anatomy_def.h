@@ -20,13 +20,15 @@ enum class Closure {
   loop,      ///< (end only) joined to the first section: hollow rings
 };
 
-/// One control section: p(a,b) = at + a u + b v + curl a^2 v/|v|, (a,b) on the profile.
+/// One control section: p(a,b) = at + a u + b v + curl a^2 v/|v|, (a,b) on the profile; where b < 0
+/// also ridge b exp(-(a |u| / ridgeHalfWidth)^2) v/|v|.
 struct StationDef {
   Vec3 at_m = Vec3::Zero();
   Vec3 u_m = Vec3::UnitX() * 0.01, v_m = Vec3::UnitY() * 0.01;  ///< half axes
   double exponent = 2;  ///< superellipse |a|^e + |b|^e = 1; unused with a named profile
   double curl_m = 0;    ///< bends the section towards v at its u ends (epiglottis)
   std::string profile;  ///< name of a free profile, or empty
+  double ridge_m = 0, ridgeHalfWidth_m = 5e-3;  ///< half sections: bump away from v at a = 0
 };
 
 /// Hole in the parent: between two of its stations (fractions allowed) and two section angles.
@@ -52,7 +54,8 @@ struct PartDef {
   Carrier carrier = Carrier::skull;
   bool paired = false;  ///< off the midplane: two structures NAME_L and NAME_R
   Carrier carrierRight = Carrier::skull;
-  std::vector<SweepDef> sweeps;  ///< parents before children
+  std::vector<std::string> follows;  ///< soft: moves with the nearest tissue of these structures
+  std::vector<SweepDef> sweeps;      ///< parents before children
 };
 
 enum class ToothKind { incisor, canine, premolar, molar };
@@ -73,6 +76,8 @@ struct DentalArchDef {
   double root_m = 0.003;            ///< root stub hidden in the bone
   std::vector<Vec2> lingualPlan_m;  ///< (x, y) of the lingual faces, midline first
   std::vector<ToothDef> teeth;
+  std::string gumName;        ///< empty: no gum
+  double gumMargin_m = 1e-3;  ///< its edge, from the necks towards the tips
 };
 
 /// Maxilla: a closed slab between oral palate and nasal floor, with the alveolar process.
@@ -89,6 +94,9 @@ struct PalateDef {
   double lowest_m = -0.0170;                     ///< lingual crest: the roof stops here
   double fanFront_m = -0.036;                    ///< y on the midline where the fan starts
   int sections = 22;
+  std::string mucosaName;        ///< empty: no mucosa of its own
+  std::vector<double> rugaeY_m;  ///< y of the rugae beside the raphe, front first
+  double rugaDepth_m = 7e-4;     ///< valleys between them
 };
 
 /// A named point, found on the finished mesh.

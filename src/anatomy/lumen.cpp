@@ -61,16 +61,20 @@ int Lumen::rowAt(double s_m) const {
 }
 
 double Lumen::valleculaShear(double at, double uAt) const {
-  // 10 mm deep cups either side of the median fold; clinical-reference 5 has 8-10 mm, weak.
+  // 10 mm deep cups either side of the median glossoepiglottic fold, which leaves 3.5 mm (assumed
+  // 2-5); clinical-reference 5 has 8-10 mm, weak.
   return 10e-3 * plateau(at, 0.0970, 0.1025, 0.1035, 0.1075) *
-         (0.75 + 0.25 * smoothstep(std::abs(uAt) / 0.3)) *
+         (0.35 + 0.65 * smoothstep(std::abs(uAt) / 0.3)) *
          (1 - smoothstep((std::abs(uAt) - 0.6) / 0.35));
 }
 
 double Lumen::pyriformGap(double at, double uAt) const {
-  // about 20 mm tall and 10 mm deep beside the larynx; clinical-reference 5, weak.
+  // about 20 mm tall and 10 mm deep beside the larynx; clinical-reference 5, weak. Between them and
+  // the inlet its rim rises as the aryepiglottic folds, 1.8 mm (assumed 1-3).
+  const double off = (std::abs(uAt) - kInletHalfU) / 0.1;
   return 6e-3 * plateau(at, 0.122, 0.132, 0.141, 0.149) *
-         plateau(std::abs(uAt), 0.5, 0.68, 0.8, 0.98);
+             plateau(std::abs(uAt), 0.5, 0.68, 0.8, 0.98) -
+         1.8e-3 * plateau(at, 0.110, 0.115, 0.128, 0.134) * std::exp(-off * off);
 }
 
 LumenPose Lumen::neutralPose() const {

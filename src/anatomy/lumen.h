@@ -9,6 +9,7 @@
 //  u  -1 (patient right) .. 1 (left), x = u * halfWidth(s)
 //  n  unit normal of the midline in the sagittal plane, from F towards M
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -81,7 +82,7 @@ class Lumen {
   int index(int row, int column) const { return row * def_.columns + column; }
 
   /// Pockets of the M sheet at rest: the slip that makes the vallecular floor, m, and the depth
-  /// that the pyriform sinuses add to the gap, m.
+  /// that the pyriform sinuses add to the gap (the aryepiglottic folds take from it), m.
   double valleculaShear(double s_m, double u) const;
   double pyriformGap(double s_m, double u) const;
 
@@ -90,6 +91,12 @@ class Lumen {
   LumenSheets evaluate(const LumenPose& pose) const;
 
   const SkinLayout& skin() const { return skin_; }
+  /// Depth 0..1 of a skin vertex below the laryngeal inlet; 0 elsewhere.
+  double inletDepth(int skinVertex) const {
+    const auto [sheet, i] = source_[skinVertex];
+    if (sheet != 3) return 0;
+    return std::min(1.0, (i / inletHole_.loop() + 1.0) / inletDepths_);
+  }
   /// Skin vertices in the order of skin().
   std::vector<Vec3> skinPositions(const LumenSheets& sheets) const;
 

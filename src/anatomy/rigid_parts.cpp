@@ -11,15 +11,19 @@ namespace {
 
 struct Section {
   Vec3 at, u, v;
-  double curl = 0;
+  double curl = 0, ridge = 0, ridgeHalfWidth = 1;
   std::vector<Vec2> outline;  ///< (a, b) per ring point
 };
 
 std::vector<Vec3> sectionPoints(const Section& s, double scale = 1) {
   std::vector<Vec3> points;
-  const Vec3 bend = s.v.normalized() * s.curl;
-  for (const Vec2& ab : s.outline)
-    points.push_back(s.at + scale * (ab.x() * s.u + ab.y() * s.v + ab.x() * ab.x() * bend));
+  const Vec3 along = s.v.normalized();
+  for (const Vec2& ab : s.outline) {
+    const double beside = ab.x() * s.u.norm() / s.ridgeHalfWidth;
+    const double bend =
+        ab.x() * ab.x() * s.curl + s.ridge * std::exp(-beside * beside) * std::min(0.0, ab.y());
+    points.push_back(s.at + scale * (ab.x() * s.u + ab.y() * s.v + bend * along));
+  }
   return points;
 }
 
@@ -35,6 +39,8 @@ Section between(const Section& s0, const Section& s1, const Section& s2, const S
   s.u = catmullRom(s0.u, s1.u, s2.u, s3.u, t);
   s.v = catmullRom(s0.v, s1.v, s2.v, s3.v, t);
   s.curl = (1 - t) * s1.curl + t * s2.curl;
+  s.ridge = (1 - t) * s1.ridge + t * s2.ridge;
+  s.ridgeHalfWidth = (1 - t) * s1.ridgeHalfWidth + t * s2.ridgeHalfWidth;
   for (size_t i = 0; i < s.outline.size(); ++i)
     s.outline[i] = (1 - t) * s1.outline[i] + t * s2.outline[i];
   return s;
@@ -62,7 +68,7 @@ std::vector<Section> controlSections(const SweepDef& def, int ringPoints,
                                      const std::map<std::string, std::vector<Vec2>>& profiles) {
   std::vector<Section> out;
   for (const StationDef& st : def.stations) {
-    Section s{st.at_m, st.u_m, st.v_m, st.curl_m, {}};
+    Section s{st.at_m, st.u_m, st.v_m, st.curl_m, st.ridge_m, st.ridgeHalfWidth_m, {}};
     const auto profile = profiles.find(st.profile);
     s.outline = profile == profiles.end() ? superellipse(st.exponent, ringPoints, def.half)
                                           : resampleClosed(profile->second, ringPoints);
@@ -292,13 +298,13 @@ void addTooth(HalfSurface& surface, const ToothDef& tooth, const ToothFrame& f, 
 
 }  // namespace
 
-Result<HalfSurface> dentalArch(const DentalArchDef& arch) {
+Result<std::vector<ToothPlace>> toothPlaces(const DentalArchDef& arch) {
   if (arch.lingualPlan_m.size() < 3)
     return usageError("arch " + arch.name, "its plan curve has fewer than three points",
                       "give (x, y) from the midline backwards");
-  HalfSurface surface;
   const PlanCurve plan(arch.lingualPlan_m);
   const double up = arch.upper ? -1 : 1;
+  std::vector<ToothPlace> places;
   double s = 0;
   Vec2 previous(0, 0);
   const ToothDef* before = nullptr;
@@ -314,16 +320,27 @@ Result<HalfSurface> dentalArch(const DentalArchDef& arch) {
                : centre(s).x() < tooth.width_m / 2 + kContact_m / 2)
       s += kStep_m;
     const auto [p, along] = plan.at(s);
-    const Vec3 outwards(along.y(), -along.x(), 0), axis(0, 0, up);
-    ToothFrame f;
-    f.mesiodistal = Vec3(along.x(), along.y(), 0);
-    f.occlusal = std::cos(tooth.lean_rad) * axis + std::sin(tooth.lean_rad) * outwards;
-    f.buccal = std::cos(tooth.lean_rad) * outwards - std::sin(tooth.lean_rad) * axis;
     previous = centre(s);
-    f.cervix = Vec3(previous.x(), previous.y(),
-                    tooth.tipZ_m - up * tooth.height_m * std::cos(tooth.lean_rad));
-    addTooth(surface, tooth, f, arch.root_m);
+    places.push_back({s, Vec3(along.x(), along.y(), 0),
+                      Vec3(previous.x(), previous.y(),
+                           tooth.tipZ_m - up * tooth.height_m * std::cos(tooth.lean_rad))});
     before = &tooth;
+  }
+  return places;
+}
+
+Result<HalfSurface> dentalArch(const DentalArchDef& arch) {
+  const auto places = toothPlaces(arch);
+  if (!places) return std::unexpected(places.error());
+  HalfSurface surface;
+  for (size_t i = 0; i < arch.teeth.size(); ++i) {
+    const ToothDef& tooth = arch.teeth[i];
+    const Vec3 along = (*places)[i].mesiodistal;
+    const Vec3 outwards(along.y(), -along.x(), 0), axis(0, 0, arch.upper ? -1 : 1);
+    const double c = std::cos(tooth.lean_rad), n = std::sin(tooth.lean_rad);
+    const ToothFrame f{(*places)[i].cervix, along, c * outwards - n * axis,
+                       c * axis + n * outwards};
+    addTooth(surface, tooth, f, arch.root_m);
   }
   return surface;
 }

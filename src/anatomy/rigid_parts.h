@@ -13,6 +13,15 @@ namespace swallowclip::anatomy {
 Result<HalfSurface> sweepPart(const PartDef& part,
                               const std::map<std::string, std::vector<Vec2>>& profiles);
 
+/// Where a tooth stands: arc length along the lingual plan, direction of the arch, centre of its
+/// neck.
+struct ToothPlace {
+  double s_m = 0;
+  Vec3 mesiodistal, cervix;
+};
+/// Of the left teeth, midline first; neighbours touch at their widest.
+Result<std::vector<ToothPlace>> toothPlaces(const DentalArchDef& arch);
+
 /// Crowns of one side of an arch, each a closed solid with a root stub.
 Result<HalfSurface> dentalArch(const DentalArchDef& arch);
 

@@ -9,6 +9,8 @@
 
 namespace swallowclip::anatomy {
 namespace {
+constexpr double kFoldCover_m = 3e-4;                  // assumed, 0.2-0.5 mm
+constexpr double kFoldsFrom = 0.52, kFoldsTo = 0.595;  // of the vocal folds in the inlet's depth
 constexpr int kUnderside = 11;  // vertices from the tongue's lateral edge round to the other one
 
 // Closed tube over `stations` rings of `ring` vertices, the first `top` of which run from right to
@@ -71,9 +73,20 @@ SoftParts::SoftParts(const Lumen& lumen, SoftDef def) : lumen_(lumen), def_(std:
                          Carrier::skull,
                          false,
                          {velum(rest), tubeTriangles(velumRows, 2 * nc, nc, true)}});
-  addShell("pharyngeal_wall", "muscle", def_.wallThickness_m, WallId::posterior);
-  addShell("larynx_mucosa", "mucosa", def_.mucosaThickness_m, WallId::larynx);
-  addShell("esophagus", "muscle", def_.wallThickness_m, WallId::esophagus);
+  const auto wall = [this](WallId w) {
+    return [this, w](const Triangle& t) { return ofWall(t, w); };
+  };
+  addShell("pharyngeal_wall", "muscle", {{}, {}, def_.wallThickness_m}, wall(WallId::posterior));
+  addShell("larynx_mucosa", "mucosa", {{}, {}, def_.mucosaThickness_m}, wall(WallId::larynx));
+  addShell("esophagus", "muscle", {{}, {}, def_.wallThickness_m}, wall(WallId::esophagus));
+  // a pale band on the mucosa, so thin that shut folds still look shut
+  addShell("vocal_folds", "mucosa", {{}, {}, kFoldCover_m, kFoldCover_m},
+           [this](const Triangle& t) {
+             return std::all_of(t.begin(), t.end(), [this](int v) {
+               const double depth = lumen_.inletDepth(v);
+               return depth >= kFoldsFrom && depth <= kFoldsTo;
+             });
+           });
   const std::vector<Vec3> skin = lumen_.skinPositions(rest);
   for (std::size_t i = 0; i < shells_.size(); ++i)
     structures_[2 + i].mesh.positions = shell(shells_[i], skin);
@@ -141,24 +154,21 @@ std::vector<Vec3> SoftParts::velum(const LumenSheets& sheets) const {
   return p;
 }
 
-void SoftParts::addShell(const std::string& name, const std::string& material, double thickness_m,
-                         WallId wall) {
-  const SkinLayout& skin = lumen_.skin();
-  const auto is = [&](int v, WallId w) { return skin.wall[v] == static_cast<std::uint8_t>(w); };
-  const auto belongs = [&](const Triangle& t) {
-    int own = 0, posterior = 0;
-    for (int v : t) {
-      own += is(v, wall);
-      posterior += is(v, WallId::posterior);
-    }
-    if (wall == WallId::posterior) return own == 3;
-    if (wall == WallId::larynx) return own > 0 && own + posterior == 3;
-    return own > 0;
-  };
-  Shell s;
-  s.thickness_m = thickness_m;
+bool SoftParts::ofWall(const Triangle& t, WallId wall) const {
+  int own = 0, posterior = 0;
+  for (int v : t) {
+    own += lumen_.skin().wall[v] == static_cast<std::uint8_t>(wall);
+    posterior += lumen_.skin().wall[v] == static_cast<std::uint8_t>(WallId::posterior);
+  }
+  if (wall == WallId::posterior) return own == 3;
+  if (wall == WallId::larynx) return own > 0 && own + posterior == 3;
+  return own > 0;
+}
+
+void SoftParts::addShell(const std::string& name, const std::string& material, Shell s,
+                         const std::function<bool(const Triangle&)>& belongs) {
   std::map<int, int> local;
-  for (const Triangle& t : skin.triangles) {
+  for (const Triangle& t : lumen_.skin().triangles) {
     if (!belongs(t)) continue;
     Triangle mapped;
     for (int k = 0; k < 3; ++k) {
@@ -192,6 +202,7 @@ std::vector<Vec3> SoftParts::shell(const Shell& s, const std::vector<Vec3>& skin
   const std::vector<Vec3> n = vertexNormals(p, s.inner);
   const std::size_t count = p.size();
   for (std::size_t i = 0; i < count; ++i) p.push_back(p[i] + s.thickness_m * n[i]);
+  for (std::size_t i = 0; i < count; ++i) p[i] -= s.lift_m * n[i];
   return p;
 }
 

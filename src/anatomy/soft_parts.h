@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Soft structures around the lumen, as closed meshes whose faces towards it are the lumen's own
-// sheets: tongue, soft palate, pharyngeal wall, larynx mucosa, cervical esophagus. Topology is
-// fixed; positions follow a LumenPose, and the tongue keeps its volume by bulging below.
+// sheets: tongue, soft palate, pharyngeal wall, larynx mucosa, cervical esophagus, vocal folds.
+// Topology is fixed; positions follow a LumenPose, and the tongue keeps its volume by bulging
+// below.
 #pragma once
+#include <functional>
+
 #include "anatomy/anatomy.h"
 #include "anatomy/lumen.h"
 
@@ -34,16 +37,17 @@ class SoftParts {
 
  private:
   struct Shell {
-    std::vector<int> skinVertices;  ///< inner vertex -> skin vertex
-    std::vector<Triangle> inner;    ///< over inner vertices, as in the skin
-    double thickness_m = 0;
+    std::vector<int> skinVertices;       ///< inner vertex -> skin vertex
+    std::vector<Triangle> inner;         ///< over inner vertices, as in the skin
+    double thickness_m = 0, lift_m = 0;  ///< outwards and into the lumen from its wall
   };
   std::vector<Vec3> tongue(const LumenSheets& sheets, const SoftPose& pose, double bulge_m) const;
   std::vector<Vec3> keepVolume(const LumenSheets& sheets, const SoftPose& pose) const;
   std::vector<Vec3> velum(const LumenSheets& sheets) const;
   std::vector<Vec3> shell(const Shell& s, const std::vector<Vec3>& skin) const;
-  void addShell(const std::string& name, const std::string& material, double thickness_m,
-                WallId wall);
+  bool ofWall(const Triangle& t, WallId wall) const;
+  void addShell(const std::string& name, const std::string& material, Shell shell,
+                const std::function<bool(const Triangle&)>& belongs);
 
   const Lumen& lumen_;
   SoftDef def_;

@@ -1,41 +1,47 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "kinematics/choreography.h"
+#include "kinematics/follow.h"
 
 namespace swallowclip::kinematics {
 namespace {
-constexpr int kNearest = 8;  // skin vertices that carry a point of the epiglottis
-
-/// A point that follows the mucosa around it: mean displacement of its nearest skin vertices,
-/// weighted by inverse squared distance.
-struct Attachment {
-  std::array<int, kNearest> vertex{};
-  std::array<double, kNearest> weight{};
+/// A soft structure and what carries it; vertices of all carrying structures in one row.
+struct Follower {
+  std::size_t own = 0;
+  std::vector<std::size_t> carriers;
+  std::vector<Vec3> rest;
+  std::vector<Attachment> attachments;
 };
 
-Attachment attach(const Vec3& p, const std::vector<Vec3>& skin,
-                  const std::vector<int>& candidates) {
-  std::vector<std::pair<double, int>> near;
-  for (int v : candidates) near.push_back({(skin[v] - p).squaredNorm(), v});
-  std::partial_sort(near.begin(), near.begin() + kNearest, near.end());
-  Attachment a;
-  double sum = 0;
-  for (int k = 0; k < kNearest; ++k) {
-    a.vertex[k] = near[k].second;
-    a.weight[k] = 1 / (near[k].first + 1e-8);
-    sum += a.weight[k];
+Follower follower(const MeshSequence& sequence, std::size_t own,
+                  const std::vector<std::string>& names) {
+  Follower f;
+  f.own = own;
+  for (std::size_t i = 0; i < sequence.structures.size(); ++i) {
+    const StructureSequence& s = sequence.structures[i];
+    if (std::find(names.begin(), names.end(), s.name) == names.end()) continue;
+    f.carriers.push_back(i);
+    f.rest.insert(f.rest.end(), s.rest.begin(), s.rest.end());
   }
-  for (double& w : a.weight) w /= sum;
-  return a;
+  std::vector<int> all(f.rest.size());
+  std::iota(all.begin(), all.end(), 0);
+  for (const Vec3& p : sequence.structures[own].rest)
+    f.attachments.push_back(attach(p, f.rest, all));
+  return f;
 }
 
-Vec3 follow(const Attachment& a, const std::vector<Vec3>& rest, const std::vector<Vec3>& now) {
-  Vec3 d = Vec3::Zero();
-  for (int k = 0; k < kNearest; ++k) d += a.weight[k] * (now[a.vertex[k]] - rest[a.vertex[k]]);
-  return d;
+std::vector<Vec3> followed(const Follower& f, const MeshSequence& sequence, int frame) {
+  std::vector<Vec3> now;
+  for (std::size_t i : f.carriers) {
+    const std::vector<Vec3>& p = sequence.structures[i].frames[frame];
+    now.insert(now.end(), p.begin(), p.end());
+  }
+  std::vector<Vec3> p = sequence.structures[f.own].rest;
+  for (std::size_t v = 0; v < p.size(); ++v) p[v] += follow(f.attachments[v], f.rest, now);
+  return p;
 }
 
 Pose carrierPose(anatomy::Carrier c, const CarrierPoses& p) {
@@ -100,6 +106,10 @@ BakedMotion bake(const anatomy::Anatomy& rigidParts, const anatomy::Lumen& lumen
     if (follows)
       for (const Vec3& p : s.mesh.positions) attachments[i].push_back(attach(p, restSkin, mucosa));
   }
+  std::vector<Follower> followers;
+  for (std::size_t i = 0; i < rigidParts.structures.size(); ++i)
+    if (!rigidParts.structures[i].follows.empty())
+      followers.push_back(follower(out.sequence, softCount + i, rigidParts.structures[i].follows));
   std::vector<std::pair<std::string, Vec3>> points(rigidParts.landmarks.begin(),
                                                    rigidParts.landmarks.end());
   std::vector<Attachment> pointAttachment(points.size());
@@ -133,6 +143,8 @@ BakedMotion bake(const anatomy::Anatomy& rigidParts, const anatomy::Lumen& lumen
       }
       out.sequence.structures[softCount + i].frames.push_back(std::move(p));
     }
+    for (const Follower& f : followers)
+      out.sequence.structures[f.own].frames.back() = followed(f, out.sequence, k);
     std::vector<Vec3> marks;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Carrier c = landmarkCarrier(points[i].first);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/scene_loader.h"
 
+#include <algorithm>
+
 #include "anatomy/anatomy_builder.h"
 #include "scene/anatomy_file.h"
 #include "scene/lumen_file.h"
@@ -31,6 +33,23 @@ Result<void> loadBones(const std::filesystem::path& folder, LoadedScene& scene) 
   scene.rigid.landmarks = std::move(imported->anatomy.landmarks);
   return {};
 }
+
+// A soft part follows tissue with a motion of its own, not another follower.
+Result<void> checkFollowed(const LoadedScene& scene) {
+  std::vector<std::string> known;
+  for (const anatomy::Structure& s : scene.soft->structures()) known.push_back(s.name);
+  for (const anatomy::Structure& s : scene.rigid.structures)
+    if (s.follows.empty()) known.push_back(s.name);
+  for (const anatomy::Structure& s : scene.rigid.structures)
+    for (const std::string& name : s.follows) {
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      const std::string near = nearestName(name, known);
+      return usageError("structure " + s.name, fmt::format("it cannot follow \"{}\"", name),
+                        near.empty() ? "name structures that move by themselves"
+                                     : "did you mean \"" + near + "\"?");
+    }
+  return {};
+}
 }  // namespace
 
 Result<LoadedScene> loadScene(const RunOptions& options) {
@@ -50,6 +69,7 @@ Result<LoadedScene> loadScene(const RunOptions& options) {
   if (!soft) return std::unexpected(soft.error());
   scene.lumen = std::make_unique<anatomy::Lumen>(std::move(*lumen));
   scene.soft = std::make_unique<anatomy::SoftParts>(*scene.lumen, std::move(*soft));
+  if (auto good = checkFollowed(scene); !good) return std::unexpected(good.error());
   return scene;
 }
 }  // namespace swallowclip::pipeline

@@ -48,6 +48,10 @@ StationDef station(const JsonNode& node, bool half) {
   s.exponent = node.number("exponent", 1, 8, s.exponent);
   s.curl_m = length(node, "curl_mm", -20, 20, s.curl_m);
   s.profile = node.text("profile", "");
+  if (node.has("ridge_mm")) {
+    s.ridge_m = length(node, "ridge_mm", -20, 30, 0);
+    s.ridgeHalfWidth_m = length(node, "ridge_half_width_mm", 1, 60, s.ridgeHalfWidth_m);
+  }
   if (s.u_m.norm() == 0 || s.v_m.norm() == 0)
     node.fail("a half axis has no length", "give u_mm and v_mm");
   if (half && (s.at_m.x() != 0 || s.v_m.x() != 0 || !s.profile.empty()))
@@ -75,7 +79,7 @@ SweepDef sweep(const JsonNode& node) {
       node.fail("window_stations and window_deg need two numbers each", "give from and to");
   }
   s.ringPoints = node.integer("ring_points", 5, 64, s.ringPoints);
-  s.edge_m = length(node, "edge_mm", 0.5, 10, s.edge_m);
+  s.edge_m = length(node, "edge_mm", 0.5, 40, s.edge_m);
   s.startDome_m = length(node, "start_dome_mm", 0, 20, s.startDome_m);
   s.endDome_m = length(node, "end_dome_mm", 0, 20, s.endDome_m);
   for (const JsonNode& n : node.array("stations")) s.stations.push_back(station(n, s.half));
@@ -88,6 +92,7 @@ PartDef part(const JsonNode& node) {
   p.material = node.choice("material", kMaterials);
   p.carrier = carrier(node, "carrier");
   p.paired = node.boolean("paired", false);
+  if (node.has("follows")) p.follows = node.texts("follows");
   if (p.paired) p.carrierRight = carrier(node, "carrier_right");
   for (const JsonNode& n : node.array("sweeps")) p.sweeps.push_back(sweep(n));
   return p;
@@ -111,6 +116,8 @@ DentalArchDef arch(const JsonNode& node) {
     t.lean_rad = n.number("lean_deg", -45, 45, 0) * kRadPerDeg;
     a.teeth.push_back(t);
   }
+  a.gumName = node.text("gum", "");
+  a.gumMargin_m = length(node, "gum_margin_mm", 0, 6, a.gumMargin_m);
   return a;
 }
 
@@ -129,6 +136,10 @@ PalateDef palate(const JsonNode& node) {
   p.lowest_m = length(node, "lowest_mm", -60, 0, p.lowest_m);
   p.fanFront_m = length(node, "fan_front_mm", -60, 0, p.fanFront_m);
   p.sections = node.integer("sections", 4, 100, p.sections);
+  p.mucosaName = node.text("mucosa", "");
+  if (node.has("rugae_y_mm"))
+    for (double y : node.numbers("rugae_y_mm")) p.rugaeY_m.push_back(y * kMetrePerMm);
+  p.rugaDepth_m = length(node, "ruga_depth_mm", 0, 2, p.rugaDepth_m);
   return p;
 }
 

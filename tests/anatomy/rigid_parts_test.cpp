@@ -55,10 +55,36 @@ void expectWithin(const char* what, double value, double low, double high) {
 }
 
 TEST(RigidParts, HasAllStructures) {
-  for (const char* name : {"maxilla", "upper_teeth", "lower_teeth", "mandible",    "hyoid",
-                           "thyroid", "cricoid",     "arytenoid_L", "arytenoid_R", "epiglottis",
-                           "trachea", "c2",          "c3",          "c4",          "c5",
-                           "c6",      "disc_c2c3",   "disc_c3c4",   "disc_c4c5",   "disc_c5c6"})
+  for (const char* name : {"maxilla",
+                           "upper_teeth",
+                           "lower_teeth",
+                           "mandible",
+                           "hyoid",
+                           "thyroid",
+                           "cricoid",
+                           "arytenoid_L",
+                           "arytenoid_R",
+                           "epiglottis",
+                           "trachea",
+                           "c2",
+                           "c3",
+                           "c4",
+                           "c5",
+                           "c6",
+                           "disc_c2c3",
+                           "disc_c3c4",
+                           "disc_c4c5",
+                           "disc_c5c6",
+                           "c1",
+                           "c7",
+                           "palate_mucosa",
+                           "upper_gum",
+                           "lower_gum",
+                           "uvula",
+                           "palatoglossal_arch_L",
+                           "palatopharyngeal_arch_R",
+                           "floor_of_mouth",
+                           "face"})
     EXPECT_NE(adult().find(name), nullptr) << name;
   EXPECT_EQ(adult().find("epiglottis")->carrier, Carrier::epiglottis);
   EXPECT_EQ(adult().find("arytenoid_R")->carrier, Carrier::arytenoidR);
@@ -74,7 +100,7 @@ TEST(RigidParts, EverySolidIsClosedAndFacesOutwards) {
     EXPECT_GT(volume(s.mesh), 0) << s.name;
     total += s.mesh.triangles.size();
   }
-  EXPECT_LE(total, 16000u);
+  EXPECT_LE(total, 32000u);  // views cut or hide half of what there is: 40k in view
 }
 
 TEST(RigidParts, NoSliverOrFoldedTriangles) {
@@ -167,9 +193,10 @@ TEST(RigidParts, PalateBoneLiesAboveTheMucosa) {
       const auto inside = [&](double up_mm) {
         return windingNumber(mucosa + Vec3(0, 0, up_mm * 1e-3), mesh.positions, mesh.triangles);
       };
-      EXPECT_LT(inside(0.35), 0.5) << "bone in the mucosa at x " << x * 1e3 << " y " << y;
+      const double thick_mm = adultDef().palate.mucosa_m * 1e3;
+      EXPECT_LT(inside(thick_mm - 0.5), 0.5) << "bone in the mucosa at x " << x * 1e3 << " y " << y;
       if (f < 0.7) {
-        EXPECT_GT(inside(1.6), 0.5) << "no bone above x " << x * 1e3 << " y " << y;
+        EXPECT_GT(inside(thick_mm + 0.75), 0.5) << "no bone above x " << x * 1e3 << " y " << y;
       }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The whole program on the first instants of a swallow.
 #include "pipeline/interrupt.h"
+#include "pipeline/scene_loader.h"
 #include "pipeline/simulation.h"
 #include "run.h"
 
@@ -101,6 +102,23 @@ TEST_F(Pipeline, FolderThatIsAFileIsRefusedBeforeAnyWork) {
   const auto done = render(options, notes);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().text().find("occupied"), std::string::npos) << done.error().text();
+}
+
+TEST_F(Pipeline, APartThatFollowsNothingIsRefusedWithTheNearestName) {
+  const auto scene = folder / "scene";
+  std::filesystem::copy(options.data / "scenes/adult", scene);
+  std::string text = readFile(scene / "anatomy.json").value_or(std::string());
+  const std::string from = "\"follows\": [\"soft_palate\"]";
+  ASSERT_NE(text.find(from), std::string::npos);
+  text.replace(text.find(from), from.size(), "\"follows\": [\"soft_palat\"]");
+  std::filesystem::permissions(scene / "anatomy.json", std::filesystem::perms::owner_all);
+  std::ofstream(scene / "anatomy.json") << text;
+  options.scene = scene.string();
+  const auto loaded = loadScene(options);
+  ASSERT_FALSE(loaded);
+  EXPECT_EQ(loaded.error().kind, ErrorKind::usage);
+  EXPECT_NE(loaded.error().text().find("uvula"), std::string::npos);
+  EXPECT_NE(loaded.error().text().find("did you mean \"soft_palate\"?"), std::string::npos);
 }
 
 TEST_F(Pipeline, ASetThatNamesNoTrackOffersTheNearestOne) {
