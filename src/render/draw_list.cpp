@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/digest.h"
+#include "render/body_outline.h"
 #include "render/fluid_surface.h"
 
 namespace swallowclip::render {
@@ -60,6 +61,14 @@ Range append(DrawList& list, const std::vector<Vertex>& vertices,
   return r;
 }
 
+std::vector<std::uint32_t> corners(std::span<const Triangle> triangles) {
+  std::vector<std::uint32_t> indices;
+  indices.reserve(3 * triangles.size());
+  for (const Triangle& t : triangles)
+    for (int v : t) indices.push_back(static_cast<std::uint32_t>(v));
+  return indices;
+}
+
 Range appendSoup(DrawList& list, const std::vector<Vertex>& vertices) {
   std::vector<std::uint32_t> indices(vertices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
@@ -101,6 +110,7 @@ void addStructure(DrawList& list, const frame::StructureTrack& track, int frame,
                   const DrawMesh& mesh, const RenderPreset& preset, const ViewDef& view) {
   DrawItem item;
   item.name = track.name;
+  item.substance = track.material;
   item.material = &preset.materialFor(track.name, track.material);
   item.opacity = item.material->opacity;
   if (auto it = view.ghosted.find(track.name); it != view.ghosted.end()) item.opacity = it->second;
@@ -176,14 +186,34 @@ void addBolus(DrawList& list, const frame::History& h, int frame, const RenderPr
     item.bounds.add(s.positions[i]);
   }
   if (!cutItem(item, view)) return;
-  std::vector<std::uint32_t> indices;
-  for (const Triangle& t : s.triangles)
-    for (int v : t) indices.push_back(static_cast<std::uint32_t>(v));
   item.closed = capped(item);
-  item.mesh = append(list, vertices, keptIndices(indices, vertices, item.cuts));
+  item.mesh = append(list, vertices, keptIndices(corners(s.triangles), vertices, item.cuts));
   addSections(list, item, s.triangles, s.positions, preset.sectionOutline_m);
   list.bounds.add(item.bounds);
   list.solid.push_back(std::move(item));
+}
+// The lumen's air, and the skin of head and neck: whole, seen by X-rays only.
+void addFluoroscopy(DrawList& list, const frame::History& h, int frame, const RenderPreset& preset,
+                    const ViewDef& view) {
+  const auto add = [&](const char* name, std::span<const Triangle> triangles,
+                       std::span<const Vec3f> positions) {
+    DrawItem item;
+    item.name = name;
+    std::vector<Vertex> vertices;
+    for (const Vec3f& p : positions) {
+      vertices.push_back({p, Vec3f::Zero(), p});  // lengths need no normals
+      list.bounds.add(p);
+    }
+    item.mesh = append(list, vertices, corners(triangles));
+    return item;
+  };
+  list.referenceDepth = view.referenceDepth;
+  list.barium_kgm3 = h.meta.bariumSulfate_kgm3;
+  if (!preset.fluoro.body) return;
+  if (!h.skin.positions.empty())
+    list.air.push_back(add("lumen", h.skin.triangles, h.skin.positions[frame]));
+  const ClosedSurface body = bodyOutline();
+  list.body.push_back(add("body", body.triangles, body.positions));
 }
 }  // namespace
 
@@ -234,6 +264,7 @@ DrawList buildDrawList(const frame::History& history, int frame, const Prepared&
   std::sort(list.ghost.begin(), list.ghost.end(),
             [&](const DrawItem& a, const DrawItem& b) { return depth(a) < depth(b); });
   addBolus(list, history, frame, preset, view);
+  if (view.style == Style::fluoro) addFluoroscopy(list, history, frame, preset, view);
   if (list.restBounds.empty()) list.restBounds = list.bounds;
   if (!list.bounds.empty()) {
     list.restBounds.low.array() -= kRoomToMove_m;

@@ -26,6 +26,7 @@ struct Range {
 
 struct DrawItem {
   std::string name;
+  std::string substance;               ///< material name as in the scene
   const Material* material = nullptr;  ///< lives in the preset
   float opacity = 1;
   bool closed = false;  ///< its back faces never show, but for uncapped cuts
@@ -40,8 +41,11 @@ struct DrawList {
   std::vector<std::uint32_t> indices;
   std::vector<DrawItem> solid;  ///< in order of section priority, the bolus last
   std::vector<DrawItem> ghost;  ///< back to front as on the first frame, so that order never flips
-  Bounds bounds;                ///< everything in view at this frame
-  Bounds restBounds;            ///< the same at the first frame, with room to move: fixes shadows
+  std::vector<DrawItem> air, body;  ///< fluoroscopy: the lumen, and the skin of head and neck
+  double barium_kgm3 = 0;           ///< barium sulfate in the bolus
+  float referenceDepth = 2.5f;      ///< optical depth that the exposure is set for
+  Bounds bounds;                    ///< everything in view at this frame
+  Bounds restBounds;  ///< the same at the first frame, with room to move: fixes shadows
 };
 
 /// Draw meshes of a history, made once.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Simulated videofluoroscopy: every mesh whole and transparent, by Beer-Lambert's law along each
-// ray. Overlapping bodies add; the soft tissue around is a uniform slab.
+// Simulated videofluoroscopy: Beer-Lambert's law along each ray through whole meshes, then what a
+// detector makes of it (scatter, blades, quanta, light spread) and what a screen shows. In front of
+// the body is air; the body is soft tissue wherever nothing else is modelled; the lumen is air
+// until the bolus fills it. Overlapping bodies add.
 #pragma once
 #include <filesystem>
 
 #include "core/image.h"
 #include "render/draw_list.h"
+#include "render/float_image.h"
 #include "render/surface_pass.h"
 
 namespace swallowclip::render {
@@ -13,9 +16,12 @@ namespace swallowclip::render {
 class FluoroPass {
  public:
   Result<void> create(const std::filesystem::path& shaderDir, const RenderPreset& preset);
-  /// `frame` seeds the grain.
+  /// `frame` keys the quantum noise.
   Result<Image> draw(const DrawList& list, const Camera& camera, const RenderPreset& preset,
                      int frame);
+  /// The detector's signal relative to the open field, before the screen, for measuring.
+  Result<FloatImage> signal(const DrawList& list, const Camera& camera, const RenderPreset& preset,
+                            int frame);
 
   FluoroPass() = default;
   ~FluoroPass();
@@ -23,8 +29,14 @@ class FluoroPass {
   FluoroPass& operator=(const FluoroPass&) = delete;
 
  private:
-  Program length_, display_;
-  Target depth_, picture_;
+  Result<void> drawDepth(const DrawList& list, const Camera& camera, const RenderPreset& preset);
+  Result<const Target*> drawSignal(const DrawList& list, const Camera& camera,
+                                   const RenderPreset& preset, int frame);
+  void blur(const Target& from, const Target& by, const Target& to, float sigma_px);
+  void cover(const Target& to);
+
+  Program length_, scatter_, blur_, detector_, display_;
+  Target depth_, scatterA_, scatterB_, signalA_, signalB_, picture_;
   GpuMesh mesh_;
   GLuint emptyArray_ = 0;
 };

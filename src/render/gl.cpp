@@ -102,8 +102,7 @@ Result<void> Target::create(const char* what, int width, int height, int samples
   glGenFramebuffers(1, &id_);
   glBindFramebuffer(GL_FRAMEBUFFER, id_);
   if (colourFormat) {
-    const bool exact = colourFormat == GL_R32F;
-    colour_.create(colourFormat, width, height, samples, exact ? GL_NEAREST : GL_LINEAR);
+    colour_.create(colourFormat, width, height, samples, GL_LINEAR);
     glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, colour_.id(), 0);
   } else {
     glDrawBuffer(GL_NONE);

@@ -38,6 +38,9 @@ std::string RenderPreset::validate() const {
     return fmt::format("shadow map of {} px not in 64..4096", light.shadowMap_px);
   if (light.key.direction.norm() < 1e-6f || light.fill.direction.norm() < 1e-6f)
     return "a light has no direction";
+  if (fluoro.black <= fluoro.white)
+    return fmt::format("fluoro window from {} to {}: black must lie deeper than white",
+                       fluoro.white, fluoro.black);
   if (views.empty()) return "no views";
   for (const auto& [key, view] : views)
     if (auto wrong = validateView(key, view); !wrong.empty()) return wrong;

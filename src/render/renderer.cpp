@@ -72,8 +72,15 @@ std::string unusable(const frame::History& h, int frame) {
 }
 }  // namespace
 
-Result<Image> Renderer::draw(const frame::History& history, int frame, const std::string& view,
-                             const CaptionText& caption) {
+// One frame as triangles and a camera, with the context current.
+struct Renderer::Scene {
+  const ViewDef* view;
+  DrawList list;
+  Camera camera;
+};
+
+Result<Renderer::Scene> Renderer::prepareScene(const frame::History& history, int frame,
+                                               const std::string& view) {
   const RenderPreset& preset = impl_->preset;
   const auto found = preset.views.find(view);
   if (found == preset.views.end()) {
@@ -93,16 +100,32 @@ Result<Image> Renderer::draw(const frame::History& history, int frame, const std
   if (auto ok = impl_->context->makeCurrent(); !ok) return std::unexpected(ok.error());
   if (impl_->prepared.meshes.empty() || impl_->prepared.digest != topologyDigest(history))
     impl_->prepared = prepare(history, preset.creaseAngle_rad);
-  DrawList list = buildDrawList(history, frame, impl_->prepared, preset, found->second);
-  const Camera camera = makeCamera(found->second, preset.width, preset.height, list.bounds);
-  auto image = found->second.style == Style::fluoro
-                   ? impl_->fluoro.draw(list, camera, preset, frame)
-                   : impl_->surface.draw(list, camera, preset);
+  Scene s{
+      &found->second, buildDrawList(history, frame, impl_->prepared, preset, found->second), {}};
+  s.camera = makeCamera(found->second, preset.width, preset.height, s.list.bounds);
+  return s;
+}
+
+Result<Image> Renderer::draw(const frame::History& history, int frame, const std::string& view,
+                             const CaptionText& caption) {
+  auto scene = prepareScene(history, frame, view);
+  if (!scene) return std::unexpected(scene.error());
+  const RenderPreset& preset = impl_->preset;
+  auto image = scene->view->style == Style::fluoro
+                   ? impl_->fluoro.draw(scene->list, scene->camera, preset, frame)
+                   : impl_->surface.draw(scene->list, scene->camera, preset);
   if (!image) return image;
   CaptionText words = caption;
-  if (words.viewLabel.empty()) words.viewLabel = found->second.captionTitle;
+  if (words.viewLabel.empty()) words.viewLabel = scene->view->captionTitle;
   if (auto ok = drawCaptions(*image, preset.caption, words); !ok)
     return std::unexpected(ok.error());
   return image;
+}
+
+Result<FloatImage> Renderer::signal(const frame::History& history, int frame,
+                                    const std::string& view) {
+  auto scene = prepareScene(history, frame, view);
+  if (!scene) return std::unexpected(scene.error());
+  return impl_->fluoro.signal(scene->list, scene->camera, impl_->preset, frame);
 }
 }  // namespace swallowclip::render

@@ -11,6 +11,7 @@
 #include "core/image.h"
 #include "frame/history.h"
 #include "render/captions.h"
+#include "render/float_image.h"
 #include "render/render_preset.h"
 
 namespace swallowclip::render {
@@ -27,11 +28,16 @@ class Renderer {
   Result<Image> draw(const frame::History& history, int frame, const std::string& view,
                      const CaptionText& caption);
 
+  /// What the detector of a fluoroscopy view receives, relative to the open field, for measuring.
+  Result<FloatImage> signal(const frame::History& history, int frame, const std::string& view);
+
   const RenderPreset& preset() const;
   std::string description() const;  ///< driver and version
 
  private:
   struct Impl;
+  struct Scene;
+  Result<Scene> prepareScene(const frame::History& history, int frame, const std::string& view);
   explicit Renderer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

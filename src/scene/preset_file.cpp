@@ -60,7 +60,6 @@ Material readMaterial(const JsonNode& node, Material m) {
   m.wetness = unit(node, "wetness", m.wetness);
   m.mottle = unit(node, "mottle", m.mottle);
   m.opacity = unit(node, "opacity", m.opacity);
-  m.attenuation_per_m = real(node, "attenuation_per_m", 1e4, m.attenuation_per_m);
   return m;
 }
 
@@ -103,13 +102,23 @@ void readCaption(const JsonNode& node, CaptionDef& caption) {
   caption.credit = node.text("credit", caption.credit);
 }
 
-void readFluoro(const JsonNode& node, FluoroDef& fluoro) {
-  fluoro.softTissue_per_m = real(node, "softTissue_per_m", 1e4, fluoro.softTissue_per_m);
-  fluoro.bodyThickness_m = length_m(node, "bodyThickness_mm", 1000, fluoro.bodyThickness_m);
-  fluoro.exposure = real(node, "exposure", 100, fluoro.exposure);
-  fluoro.noise = unit(node, "noise", fluoro.noise);
-  fluoro.blur_px = real(node, "blur_px", 50, fluoro.blur_px);
-  fluoro.boneDark = node.boolean("boneDark", fluoro.boneDark);
+void readFluoro(const JsonNode& node, FluoroDef& f) {
+  f.body = node.boolean("body", f.body);
+  constexpr double kPerM2 = 1e6;  // from 1/mm2
+  f.quanta_per_m2 =
+      static_cast<float>(node.number("quanta_per_mm2", 0, 1e7, f.quanta_per_m2 / kPerM2) * kPerM2);
+  f.scatterToPrimary = real(node, "scatterToPrimary", 10, f.scatterToPrimary);
+  f.scatterRadius_m = length_m(node, "scatterRadius_mm", 200, f.scatterRadius_m);
+  f.blur_m = length_m(node, "blur_mm", 5, f.blur_m);
+  f.fieldWidth_m = length_m(node, "fieldWidth_mm", 1000, f.fieldWidth_m);
+  f.fieldHeight_m = length_m(node, "fieldHeight_mm", 1000, f.fieldHeight_m);
+  f.fieldCorner_m = length_m(node, "fieldCorner_mm", 500, f.fieldCorner_m);
+  f.penumbra_m = length_m(node, "penumbra_mm", 50, f.penumbra_m);
+  f.white = static_cast<float>(node.number("white", -20, 20, f.white));
+  f.black = static_cast<float>(node.number("black", -20, 20, f.black));
+  f.equalisation = unit(node, "equalisation", f.equalisation);
+  f.gamma = static_cast<float>(node.number("gamma", 0.2, 5, f.gamma));
+  f.boneDark = node.boolean("boneDark", f.boneDark);
 }
 
 ClipRule readCut(const JsonNode& node) {
@@ -136,6 +145,8 @@ ViewDef readView(const JsonNode& node, const std::string& name) {
     view.orthoHeight_m = node.number("orthoHeight_mm", 1, 5000) * kMetrePerMm;
   else
     view.fovY_rad = node.number("fovY_deg", 1, 120) * kRadPerDeg;
+  view.referenceDepth =
+      static_cast<float>(node.number("referenceDepth", 0.1, 20, view.referenceDepth));
   const Vec3 gaze = view.target_m - view.eye_m;
   constexpr double kNearest_m = 1e-3;
   if (node.exists() && (!gaze.allFinite() || gaze.norm() < kNearest_m ||

@@ -150,20 +150,6 @@ TEST(Renderer, ShowsTheBolus) {
   EXPECT_GT(blue, 200);
 }
 
-TEST(Renderer, FluoroscopyFollowsBeerAndLambert) {
-  // A 40 mm cube of 60 /m in tissue of 20 /m: 40 * 0.04 = 1.6 optical depths darker.
-  RenderPreset p = test::flatPreset(200, 200);
-  p.fluoro.noise = 0;
-  p.fallback.attenuation_per_m = 60;
-  p.views["side"].style = Style::fluoro;
-  const auto h = test::still({test::box("cube", Vec3f::Constant(-0.02f), Vec3f::Constant(0.02f))});
-  const Image image = picture(p, h, "side");
-  EXPECT_NEAR(image.row(5)[4 * 5], 0.72 * 255, 2);                     // beside it
-  EXPECT_NEAR(image.row(100)[4 * 100], (0.72 - 0.30 * 1.6) * 255, 2);  // through it
-  p.fluoro.noise = 0.02f;
-  EXPECT_EQ(picture(p, h, "side").rgba, picture(p, h, "side").rgba);
-}
-
 TEST(Renderer, EmptyHistoryIsBackground) {
   frame::History h;
   h.time_s = {0};
