@@ -173,7 +173,8 @@ constexpr CommandRow kCommands[] = {
     {kExport, "export", "Write a history as files for other programs"},
     {kImport, "import", "Make a scene from meshes of one's own"},
     {kList, "list", "Show what can be chosen"},
-    {kCheck, "check", "Check scene, swallow, bolus and preset files"},
+    {kCheck, "check",
+     "Check scene, swallow, bolus and preset files, or what the views of a history show"},
     {kVerify, "verify", "Run the fluid solver on cases with known answers"},
 };
 
@@ -191,8 +192,8 @@ constexpr OptionRow kOptions[] = {
     {"--swallow", "FILE", "Swallow file instead of the one of component and score", kSwallow, 0,
      false, applyText<&RunOptions::swallow>},
     {"--set", "TRACK.KEY=VALUE", "Replace numbers of the swallow", kSwallow, 0, true, applySets},
-    {"--preset", "NAME|FILE", "Look of the pictures (default training)", kPictures, 0, false,
-     applyText<&RunOptions::preset>},
+    {"--preset", "NAME|FILE", "Look of the pictures (default training)", kPictures | kCheck, 0,
+     false, applyText<&RunOptions::preset>},
     {"--spacing-mm", "MM", "Particle spacing, 0.5 to 4 (default 2)", kSwallow, 0, false,
      applySpacing},
     {"--solver", "dfsph|wcsph", "Fluid solver (default dfsph)", kSwallow, 0, false, applySolver},

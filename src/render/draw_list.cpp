@@ -178,8 +178,8 @@ void addBolus(DrawList& list, const frame::History& h, int frame, const RenderPr
   if (s.triangles.empty()) return;
   DrawItem item;
   item.name = "bolus";
-  item.material = &preset.bolus;
-  item.opacity = preset.bolus.opacity;
+  item.material = &preset.bolusFor(h.meta.viscosity_Pas);
+  item.opacity = item.material->opacity;
   std::vector<Vertex> vertices;
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     vertices.push_back({s.positions[i], s.normals[i], s.positions[i]});

@@ -61,7 +61,7 @@ Result<void> FluoroPass::create(const std::filesystem::path& dir, const RenderPr
 // What a mesh adds counts against what it displaces: soft tissue within the body, else air. Air
 // itself (mu/rho 0.1875 cm2/g, 1.2 kg/m3: 0.02 /m) is left out.
 Result<void> FluoroPass::drawDepth(const DrawList& list, const Camera& camera,
-                                   const RenderPreset& preset) {
+                                   const RenderPreset& preset, const std::string& only) {
   const double around = preset.fluoro.body ? substance("soft-tissue")->attenuation_per_m() : 0;
   const double dense = substance("cortical-bone")->attenuation_per_m();
   depth_.bind();
@@ -82,6 +82,7 @@ Result<void> FluoroPass::drawDepth(const DrawList& list, const Camera& camera,
   };
   for (const auto* items : {&list.solid, &list.ghost})
     for (const DrawItem& item : *items) {
+      if (!only.empty() && item.name != only) continue;
       if (item.name == "bolus") {  // displaces the lumen's air
         add(item, suspension_per_m(list.barium_kgm3), 0);
         continue;
@@ -94,8 +95,10 @@ Result<void> FluoroPass::drawDepth(const DrawList& list, const Camera& camera,
       const double mu = body->attenuation_per_m();
       add(item, mu - around, (dense - mu) * corticalThickness_m(item.name, item.substance));
     }
-  for (const DrawItem& item : list.air) add(item, -around, 0);
-  for (const DrawItem& item : list.body) add(item, around, 0);
+  if (only.empty()) {
+    for (const DrawItem& item : list.air) add(item, -around, 0);
+    for (const DrawItem& item : list.body) add(item, around, 0);
+  }
   glDisable(GL_BLEND);
   return {};
 }
@@ -166,19 +169,51 @@ Result<Image> FluoroPass::draw(const DrawList& list, const Camera& camera,
   return image;
 }
 
+std::vector<float> FluoroPass::read(const Target& from) const {
+  from.bind();
+  const std::size_t row = static_cast<std::size_t>(from.width());
+  std::vector<float> upward(row * static_cast<std::size_t>(from.height())), values;
+  glReadPixels(0, 0, from.width(), from.height(), GL_RED, GL_FLOAT, upward.data());
+  values.reserve(upward.size());
+  for (std::size_t y = upward.size(); y > 0; y -= row)
+    values.insert(values.end(), upward.begin() + static_cast<std::ptrdiff_t>(y - row),
+                  upward.begin() + static_cast<std::ptrdiff_t>(y));
+  return values;
+}
+
 Result<FloatImage> FluoroPass::signal(const DrawList& list, const Camera& camera,
                                       const RenderPreset& preset, int frame) {
   const auto signal = drawSignal(list, camera, preset, frame);
   if (!signal) return std::unexpected(signal.error());
-  (*signal)->bind();
-  FloatImage image{preset.width, preset.height, {}};
-  const std::size_t row = static_cast<std::size_t>(image.width);
-  std::vector<float> upward(row * static_cast<std::size_t>(image.height));
-  glReadPixels(0, 0, image.width, image.height, GL_RED, GL_FLOAT, upward.data());
-  for (int y = image.height - 1; y >= 0; --y)
-    image.values.insert(image.values.end(), upward.begin() + static_cast<std::ptrdiff_t>(y * row),
-                        upward.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
+  FloatImage image{preset.width, preset.height, read(**signal)};
   if (auto ok = checked(); !ok) return std::unexpected(ok.error());
   return image;
+}
+
+Result<std::map<std::string, int>> FluoroPass::visiblePixels(const DrawList& list,
+                                                             const Camera& camera,
+                                                             const RenderPreset& preset) {
+  constexpr float kContrast = 0.05f;  // optical depth that shows above the noise; assumed 0.03..0.1
+  mesh_.upload(list.vertices, list.indices);
+  const float half_px = 0.5f * scale(camera, list.bounds);
+  const float halfWidth = half_px * preset.fluoro.fieldWidth_m;
+  const float halfHeight = half_px * preset.fluoro.fieldHeight_m;
+  std::map<std::string, int> counts;
+  for (const auto* items : {&list.solid, &list.ghost})
+    for (const DrawItem& item : *items) {
+      if (auto ok = drawDepth(list, camera, preset, item.name); !ok)
+        return std::unexpected(ok.error());
+      const FloatImage depth{preset.width, preset.height, read(depth_)};
+      for (int y = 0; y < depth.height; ++y)
+        for (int x = 0; x < depth.width; ++x)
+          counts[item.name] +=
+              std::abs(depth.at(x, y)) > kContrast &&
+              (halfWidth <= 0 || (std::abs(static_cast<float>(x) + 0.5f -
+                                           0.5f * static_cast<float>(depth.width)) < halfWidth &&
+                                  std::abs(static_cast<float>(y) + 0.5f -
+                                           0.5f * static_cast<float>(depth.height)) < halfHeight));
+    }
+  if (auto ok = checked(); !ok) return std::unexpected(ok.error());
+  return counts;
 }
 }  // namespace swallowclip::render

@@ -5,6 +5,9 @@
 // until the bolus fills it. Overlapping bodies add.
 #pragma once
 #include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "core/image.h"
 #include "render/draw_list.h"
@@ -23,13 +26,20 @@ class FluoroPass {
   Result<FloatImage> signal(const DrawList& list, const Camera& camera, const RenderPreset& preset,
                             int frame);
 
+  /// Pixels in which a structure adds contrast, by itself and within the blades.
+  Result<std::map<std::string, int>> visiblePixels(const DrawList& list, const Camera& camera,
+                                                   const RenderPreset& preset);
+
   FluoroPass() = default;
   ~FluoroPass();
   FluoroPass(const FluoroPass&) = delete;
   FluoroPass& operator=(const FluoroPass&) = delete;
 
  private:
-  Result<void> drawDepth(const DrawList& list, const Camera& camera, const RenderPreset& preset);
+  /// All of the scene, or (when `only` is not empty) one structure.
+  Result<void> drawDepth(const DrawList& list, const Camera& camera, const RenderPreset& preset,
+                         const std::string& only = "");
+  std::vector<float> read(const Target& from) const;
   Result<const Target*> drawSignal(const DrawList& list, const Camera& camera,
                                    const RenderPreset& preset, int frame);
   void blur(const Target& from, const Target& by, const Target& to, float sigma_px);

@@ -12,6 +12,16 @@ const Material& RenderPreset::materialFor(const std::string& structure,
   return fallback;
 }
 
+const char* consistencyOf(double viscosity_Pas) {
+  return kConsistencies[(viscosity_Pas >= 0.05) + (viscosity_Pas >= 0.35) +
+                        (viscosity_Pas >= 1.75)];
+}
+
+const Material& RenderPreset::bolusFor(double viscosity_Pas) const {
+  const auto it = bolusByConsistency.find(consistencyOf(viscosity_Pas));
+  return it == bolusByConsistency.end() ? bolus : it->second;
+}
+
 namespace {
 std::string validateView(const std::string& name, const ViewDef& v) {
   const Vec3 gaze = v.eye_m - v.target_m;

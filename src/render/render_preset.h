@@ -24,7 +24,9 @@ struct Material {
   float translucency = 0.0f;  ///< light wrapping past the terminator, tinted by the base colour
   float wetness = 0.0f;       ///< strength of the thin glossy water coat
   float mottle = 0.0f;        ///< contrast of fine tissue-fixed colour variation
-  float opacity = 1.0f;       ///< below 1 drawn as ghost in every view
+  float relief = 0.0f;        ///< height of fine bumps fixed to the tissue: papillae, rugae, folds
+  float reliefSize_m = 1.2e-3f;  ///< from bump to bump
+  float opacity = 1.0f;          ///< below 1 drawn as ghost in every view
 };
 
 /// Directional light; direction points from the scene to the light, in view axes
@@ -91,6 +93,9 @@ struct ViewDef {
   std::vector<ClipRule> cuts;   ///< at most 3 may apply to one structure
   std::vector<std::string> hidden;       ///< structures not drawn
   std::map<std::string, float> ghosted;  ///< structure -> opacity 0..1
+  /// Structure -> least visible pixels in a picture of 720 lines, in every frame; see
+  /// Renderer::lost. "bolus" counts while more than half of it is above the esophageal sphincter.
+  std::map<std::string, int> shows{};
 };
 
 /// Simulated videofluoroscopy, style fluoro: the machine and its screen. What tissues attenuate is
@@ -112,6 +117,11 @@ struct FluoroDef {
   bool boneDark = true;                 ///< absorbers dark, as on a fluoroscopy screen
 };
 
+/// Bolus consistencies by apparent viscosity at 50 1/s: < 0.05, 0.35, 1.75 Pa.s and above (National
+/// Dysphagia Diet 2002).
+inline constexpr const char* kConsistencies[] = {"thin", "nectar", "honey", "pudding"};
+const char* consistencyOf(double viscosity_Pas);
+
 struct RenderPreset {
   std::string name = "training";
   int width = 1280, height = 720;  ///< even (4:2:0 video)
@@ -126,7 +136,9 @@ struct RenderPreset {
   std::map<std::string, Material> materials;   ///< by material name (muscle, bone, ...)
   std::map<std::string, Material> structures;  ///< by structure name; goes before `materials`
   Material fallback;                           ///< for unknown materials
-  Material bolus;
+  Material bolus;                              ///< where no consistency has a look of its own
+  std::map<std::string, Material> bolusByConsistency;  ///< by word of kConsistencies
+  std::map<std::string, Colour> palette;               ///< colours by name, as the files use them
   std::vector<std::string> sectionPriority;  ///< who wins where sections overlap, first wins
 
   LightDef light;
@@ -138,6 +150,7 @@ struct RenderPreset {
 
   /// The look of a structure: by name, else by material, else the fallback.
   const Material& materialFor(const std::string& structure, const std::string& material) const;
+  const Material& bolusFor(double viscosity_Pas) const;
   /// "" when usable, else what is wrong (odd size, fps < 30, zero direction ...).
   std::string validate() const;
 };

@@ -128,4 +128,39 @@ Result<FloatImage> Renderer::signal(const frame::History& history, int frame,
   if (!scene) return std::unexpected(scene.error());
   return impl_->fluoro.signal(scene->list, scene->camera, impl_->preset, frame);
 }
+
+Result<std::map<std::string, int>> Renderer::visiblePixels(const frame::History& history, int frame,
+                                                           const std::string& view) {
+  auto scene = prepareScene(history, frame, view);
+  if (!scene) return std::unexpected(scene.error());
+  return scene->view->style == Style::fluoro
+             ? impl_->fluoro.visiblePixels(scene->list, scene->camera, impl_->preset)
+             : impl_->surface.visiblePixels(scene->list, scene->camera, impl_->preset);
+}
+
+namespace {
+// A bolus that is mostly swallowed need not be seen any more.
+bool expected(const frame::History& h, int frame, const std::string& structure) {
+  if (structure != "bolus") return true;
+  if (h.bolus.positions.empty()) return false;
+  if (h.bolus.state.empty()) return true;
+  const auto& state = h.bolus.state[static_cast<std::size_t>(frame)];
+  const auto gone = std::count(state.begin(), state.end(), frame::ParticleState::swallowed);
+  return 2 * static_cast<std::size_t>(gone) < state.size();
+}
+}  // namespace
+
+Result<std::vector<Loss>> Renderer::lost(const frame::History& history, int frame,
+                                         const std::string& view) {
+  auto seen = visiblePixels(history, frame, view);
+  if (!seen) return std::unexpected(seen.error());
+  const double lines = impl_->preset.height / 720.0;
+  std::vector<Loss> losses;
+  for (const auto& [structure, least720] : impl_->preset.views.at(view).shows) {
+    const int least = static_cast<int>(least720 * lines * lines), pixels = (*seen)[structure];
+    if (pixels < least && expected(history, frame, structure))
+      losses.push_back({structure, pixels, least});
+  }
+  return losses;
+}
 }  // namespace swallowclip::render

@@ -4,8 +4,10 @@
 // context and belongs to one thread; several may exist.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "core/image.h"
@@ -15,6 +17,12 @@
 #include "render/render_preset.h"
 
 namespace swallowclip::render {
+
+/// A structure of which a view shows less than it promises.
+struct Loss {
+  std::string structure;
+  int pixels = 0, expected = 0;
+};
 
 class Renderer {
  public:
@@ -30,6 +38,12 @@ class Renderer {
 
   /// What the detector of a fluoroscopy view receives, relative to the open field, for measuring.
   Result<FloatImage> signal(const frame::History& history, int frame, const std::string& view);
+
+  /// Pixels in which each structure of a view is seen at a frame (without captions).
+  Result<std::map<std::string, int>> visiblePixels(const frame::History& history, int frame,
+                                                   const std::string& view);
+  /// What a view promises (ViewDef::shows) and does not keep at a frame.
+  Result<std::vector<Loss>> lost(const frame::History& history, int frame, const std::string& view);
 
   const RenderPreset& preset() const;
   std::string description() const;  ///< driver and version
