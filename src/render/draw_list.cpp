@@ -79,10 +79,12 @@ void addSections(DrawList& list, DrawItem& item, const std::vector<Triangle>& tr
                  const std::vector<Vec3f>& positions, float width) {
   item.fans.resize(item.cuts.size());
   item.outlines.resize(item.cuts.size());
+  item.fanBounds.resize(item.cuts.size());
   for (std::size_t k = 0; k < item.cuts.size(); ++k) {
     const CutPlane& c = item.cuts[k];
     if (!c.cap) continue;
     const auto segments = sectionSegments(triangles, positions, c.normal, c.offset);
+    for (const Vec3f& p : segments) item.fanBounds[k].add(p);
     item.fans[k] = appendSoup(list, sectionFan(segments, c.normal));
     // the lift keeps ribbons in front of caps at any view angle, and is far below a pixel
     if (width > 0)
@@ -272,5 +274,18 @@ DrawList buildDrawList(const frame::History& history, int frame, const Prepared&
     list.bounds.add(list.restBounds);
   }
   return list;
+}
+
+std::vector<int> nearestFirst(const std::vector<DrawItem>& items, const Vec3f& back) {
+  std::vector<std::pair<float, int>> order;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    float depth = 1e9f;
+    for (int k = 0; k < 8; ++k) depth = std::min(depth, -back.dot(items[i].bounds.corner(k)));
+    order.emplace_back(depth, static_cast<int>(i));
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<int> indices;
+  for (const auto& [depth, index] : order) indices.push_back(index);
+  return indices;
 }
 }  // namespace swallowclip::render

@@ -33,6 +33,7 @@ struct DrawItem {
   Range mesh;
   std::vector<CutPlane> cuts;         ///< at most 3, those that touch the mesh
   std::vector<Range> fans, outlines;  ///< [cut] section to fill and its border; may be empty
+  std::vector<Bounds> fanBounds;      ///< [cut]
   Bounds bounds;
 };
 
@@ -58,6 +59,9 @@ Prepared prepare(const frame::History& history, double creaseAngle_rad);
 
 /// Vertex positions of a structure at a frame.
 std::vector<Vec3f> positionsAt(const frame::StructureTrack& track, int frame);
+
+/// Indices of the items by the depth of their nearest corner; `back` points to the viewer.
+std::vector<int> nearestFirst(const std::vector<DrawItem>& items, const Vec3f& back);
 
 DrawList buildDrawList(const frame::History& history, int frame, const Prepared& prepared,
                        const RenderPreset& preset, const ViewDef& view);

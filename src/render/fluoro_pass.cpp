@@ -9,13 +9,6 @@ namespace swallowclip::render {
 namespace {
 constexpr int kScatterShare = 8;  // scatter is as smooth as centimetres
 
-Result<void> checked() {
-  const GLenum e = glGetError();
-  if (e == GL_NO_ERROR) return {};
-  return failure("OpenGL", fmt::format("error 0x{:04x} while drawing fluoroscopy", e),
-                 "Report it with the preset and the driver's version.");
-}
-
 // Pixels per metre in the plane through the view's target.
 float scale(const Camera& camera, const Bounds& scene) {
   const Vec3f middle = 0.5f * (scene.low + scene.high);
@@ -165,7 +158,7 @@ Result<Image> FluoroPass::draw(const DrawList& list, const Camera& camera,
   scatterA_.colour().bind(1);
   cover(picture_);
   Image image = readPicture(preset.width, preset.height);
-  if (auto ok = checked(); !ok) return std::unexpected(ok.error());
+  if (auto ok = checkedGl("fluoroscopy"); !ok) return std::unexpected(ok.error());
   return image;
 }
 
@@ -186,7 +179,7 @@ Result<FloatImage> FluoroPass::signal(const DrawList& list, const Camera& camera
   const auto signal = drawSignal(list, camera, preset, frame);
   if (!signal) return std::unexpected(signal.error());
   FloatImage image{preset.width, preset.height, read(**signal)};
-  if (auto ok = checked(); !ok) return std::unexpected(ok.error());
+  if (auto ok = checkedGl("fluoroscopy"); !ok) return std::unexpected(ok.error());
   return image;
 }
 
@@ -213,7 +206,7 @@ Result<std::map<std::string, int>> FluoroPass::visiblePixels(const DrawList& lis
                                   std::abs(static_cast<float>(y) + 0.5f -
                                            0.5f * static_cast<float>(depth.height)) < halfHeight));
     }
-  if (auto ok = checked(); !ok) return std::unexpected(ok.error());
+  if (auto ok = checkedGl("fluoroscopy"); !ok) return std::unexpected(ok.error());
   return counts;
 }
 }  // namespace swallowclip::render

@@ -9,10 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
-#include "render/draw_list.h"
 #include "render/float_image.h"
-#include "render/surface_pass.h"
+#include "render/gpu_mesh.h"
 
 namespace swallowclip::render {
 

@@ -6,6 +6,7 @@
 #include "render/context.h"
 #include "render/draw_list.h"
 #include "render/fluoro_pass.h"
+#include "render/plain_pass.h"
 #include "render/surface_pass.h"
 
 namespace swallowclip::render {
@@ -15,6 +16,7 @@ struct Renderer::Impl {
   RenderPreset preset;
   SurfacePass surface;
   FluoroPass fluoro;
+  PlainPass plain;
   Prepared prepared;
 };
 
@@ -42,6 +44,8 @@ Result<Renderer> Renderer::create(const std::filesystem::path& shaderDir, Render
   if (auto ok = impl->surface.create(shaderDir, impl->preset); !ok)
     return std::unexpected(ok.error());
   if (auto ok = impl->fluoro.create(shaderDir, impl->preset); !ok)
+    return std::unexpected(ok.error());
+  if (auto ok = impl->plain.create(shaderDir, impl->preset); !ok)
     return std::unexpected(ok.error());
   return Renderer(std::move(impl));
 }
@@ -120,6 +124,13 @@ Result<Image> Renderer::draw(const frame::History& history, int frame, const std
   if (auto ok = drawCaptions(*image, preset.caption, words); !ok)
     return std::unexpected(ok.error());
   return image;
+}
+
+Result<Image> Renderer::drawPlain(const frame::History& history, int frame,
+                                  const std::string& view) {
+  auto scene = prepareScene(history, frame, view);
+  if (!scene) return std::unexpected(scene.error());
+  return impl_->plain.draw(scene->list, scene->camera);
 }
 
 Result<FloatImage> Renderer::signal(const frame::History& history, int frame,

@@ -36,6 +36,8 @@ class Renderer {
   Result<Image> draw(const frame::History& history, int frame, const std::string& view,
                      const CaptionText& caption);
 
+  /// The same triangles in one light, without cuts, shadows and words: what a frame costs at least.
+  Result<Image> drawPlain(const frame::History& history, int frame, const std::string& view);
   /// What the detector of a fluoroscopy view receives, relative to the open field, for measuring.
   Result<FloatImage> signal(const frame::History& history, int frame, const std::string& view);
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "render/colour_vision.h"
 
@@ -31,13 +30,6 @@ bool samePlane(const CutPlane& a, const CutPlane& b) {
   return a.normal == b.normal && a.offset == b.offset;
 }
 
-Result<void> checked() {
-  const GLenum e = glGetError();
-  if (e == GL_NO_ERROR) return {};
-  return failure("OpenGL", fmt::format("error 0x{:04x} while drawing", e),
-                 "Report it with the preset and the driver's version.");
-}
-
 // Limits drawing to the picture of a box; all of it when the box reaches behind the eye.
 void scissorTo(const Bounds& b, const Camera& camera, int width, int height) {
   Eigen::Vector2f low(1, 1), high(-1, -1);
@@ -59,53 +51,6 @@ void scissorTo(const Bounds& b, const Camera& camera, int width, int height) {
   glScissor(x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0));
 }
 }  // namespace
-
-GpuMesh::~GpuMesh() {
-  if (!array_) return;
-  glDeleteVertexArrays(1, &array_);
-  glDeleteBuffers(1, &vertices_);
-  glDeleteBuffers(1, &indices_);
-}
-
-void GpuMesh::create() {
-  glGenVertexArrays(1, &array_);
-  glGenBuffers(1, &vertices_);
-  glGenBuffers(1, &indices_);
-  glBindVertexArray(array_);
-  glBindBuffer(GL_ARRAY_BUFFER, vertices_);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
-  for (unsigned k = 0; k < 3; ++k) {
-    glEnableVertexAttribArray(k);
-    glVertexAttribPointer(k, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                          reinterpret_cast<const void*>(k * sizeof(Vec3f)));
-  }
-}
-
-void GpuMesh::upload(const std::vector<Vertex>& vertices,
-                     const std::vector<std::uint32_t>& indices) {
-  const auto bytes = [](const auto& v) { return static_cast<GLsizeiptr>(v.size() * sizeof(v[0])); };
-  glBindVertexArray(array_);
-  glBindBuffer(GL_ARRAY_BUFFER, vertices_);
-  glBufferData(GL_ARRAY_BUFFER, bytes(vertices), vertices.data(), GL_STREAM_DRAW);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes(indices), indices.data(), GL_STREAM_DRAW);
-}
-
-void GpuMesh::draw(const Range& r) const {
-  if (r.count == 0) return;
-  glBindVertexArray(array_);
-  const auto offset = static_cast<std::uintptr_t>(r.firstIndex) * sizeof(std::uint32_t);
-  glDrawElementsBaseVertex(GL_TRIANGLES, r.count, GL_UNSIGNED_INT,
-                           reinterpret_cast<const void*>(offset), r.firstVertex);
-}
-
-Image readPicture(int width, int height) {
-  Image image(width, height), flipped(width, height);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, flipped.rgba.data());
-  const std::size_t bytes = static_cast<std::size_t>(width) * 4;
-  for (int y = 0; y < height; ++y) std::memcpy(image.row(y), flipped.row(height - 1 - y), bytes);
-  return image;
-}
 
 SurfacePass::~SurfacePass() {
   if (emptyArray_) glDeleteVertexArrays(1, &emptyArray_);
@@ -247,8 +192,9 @@ void SurfacePass::drawCaps(const DrawItem& item, const Camera& camera) {
     const CutPlane& c = item.cuts[k];
     if (item.fans[k].count == 0 || !camera.sees(c.normal, c.offset)) continue;
     glEnable(GL_SCISSOR_TEST);
-    scissorTo(item.bounds, camera, scene_.width(), scene_.height());
-    glClear(GL_STENCIL_BUFFER_BIT);
+    scissorTo(item.fanBounds[static_cast<std::size_t>(k)], camera, scene_.width(), scene_.height());
+    // the cover below leaves the stencil empty again, but where another cut takes from it
+    if (item.cuts.size() > 1) glClear(GL_STENCIL_BUFFER_BIT);
     glEnable(GL_STENCIL_TEST);
     glStencilFunc(GL_ALWAYS, 0, 0xff);
     glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_DECR_WRAP, GL_DECR_WRAP);
@@ -262,11 +208,12 @@ void SurfacePass::drawCaps(const DrawItem& item, const Camera& camera) {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glEnable(GL_DEPTH_TEST);
     glStencilFunc(GL_NOTEQUAL, 0, 0xff);
-    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    glStencilOp(GL_KEEP, GL_ZERO, GL_ZERO);
     solid_.use();
     setMaterial(*item.material, true, 1.0f);
     setClips(solid_, item.cuts, k);
     mesh_.draw(quadFor(c));
+    if (item.cuts.size() > 1) glClear(GL_STENCIL_BUFFER_BIT);
     glDisable(GL_STENCIL_TEST);
     glDisable(GL_SCISSOR_TEST);
   }
@@ -295,15 +242,22 @@ void SurfacePass::drawSolids(const Target& to, const DrawList& list, const Camer
   glDepthFunc(GL_LESS);
   setLights(camera, preset);
   const bool ids = id_ > 0;
+  // caps in order of priority; then the nearest meshes first, so that what they hide is not shaded
   for (const DrawItem& item : list.solid) {
     drawCaps(item, camera);
+    if (ids) ++id_;
+  }
+  id_ = ids ? 1 : 0;
+  for (const int index : nearestFirst(list.solid, camera.back)) {
+    const DrawItem& item = list.solid[static_cast<std::size_t>(index)];
+    if (ids) id_ = 1 + index;
     setMaterial(*item.material, false, 1.0f);
     setClips(solid_, item.cuts);
     cullBack(item.closed);  // caps hide every back face of a closed mesh
     mesh_.draw(item.mesh);
     cullBack(false);
-    if (ids) ++id_;
   }
+  if (ids) id_ = 1 + static_cast<int>(list.solid.size());
   if (!ids)
     for (const DrawItem& item : list.solid) drawOutlines(item, camera, preset);
 }
@@ -405,7 +359,7 @@ Result<Image> SurfacePass::draw(DrawList& list, const Camera& camera, const Rend
   composite(camera, preset);
   picture_.bind();
   Image image = readPicture(preset.width, preset.height);
-  if (auto ok = checked(); !ok) return std::unexpected(ok.error());
+  if (auto ok = checkedGl("surfaces"); !ok) return std::unexpected(ok.error());
   return image;
 }
 
@@ -438,7 +392,7 @@ Result<std::map<std::string, int>> SurfacePass::visiblePixels(DrawList& list, co
   countIds(list.ghost, firstGhost, preset, counts);
   id_ = 0;
   end();
-  if (auto ok = checked(); !ok) return std::unexpected(ok.error());
+  if (auto ok = checkedGl("surfaces"); !ok) return std::unexpected(ok.error());
   return counts;
 }
 }  // namespace swallowclip::render

@@ -5,29 +5,10 @@
 #include <filesystem>
 #include <map>
 
-#include "core/image.h"
 #include "render/draw_list.h"
-#include "render/gl.h"
+#include "render/gpu_mesh.h"
 
 namespace swallowclip::render {
-
-/// Vertex and index buffers filled anew for each frame.
-class GpuMesh {
- public:
-  GpuMesh() = default;
-  ~GpuMesh();
-  GpuMesh(const GpuMesh&) = delete;
-  GpuMesh& operator=(const GpuMesh&) = delete;
-  void create();
-  void upload(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
-  void draw(const Range& range) const;
-
- private:
-  GLuint array_ = 0, vertices_ = 0, indices_ = 0;
-};
-
-/// Reads the bound framebuffer, top row first.
-Image readPicture(int width, int height);
 
 class SurfacePass {
  public:
