@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Ray length through closed meshes times attenuation, by addition: back faces add their distance,
-// front faces take theirs away (blend ONE, ONE into a float target).
-// uAttenuation   float 1/m, above the soft tissue around
+// Optical depth through closed meshes by signed ray lengths: a back face adds its distance times
+// the attenuation, a front face takes its own away (blend ONE, ONE into a float target). The dense
+// layer of bones is added at each face: its thickness over the cosine of the ray.
+// uAttenuation   float 1/m, more (or less) than that of what surrounds the mesh
+// uLayer         float optical depth of the dense layer met at right angles, dimensionless
 // uEye           vec4  w = 1: eye position (m); w = 0: direction towards the eye
+// uOrigin        float distance (m) from the eye taken as zero, for the sake of precision
 #version 450 core
 in vec3 vPosition;
-uniform float uAttenuation;
+in vec3 vNormal;
+uniform float uAttenuation, uLayer, uOrigin;
 uniform vec4 uEye;
 layout(location = 0) out float oDepth;
 
+const float kLongestWay = 5.0;  // through a thin layer at grazing rays: sqrt(2 R / t), R = 25 t / 2
+
 void main() {
-  float d = uEye.w > 0.5 ? distance(uEye.xyz, vPosition) : -dot(uEye.xyz, vPosition);
+  vec3 v = uEye.w > 0.5 ? uEye.xyz - vPosition : uEye.xyz;
+  float d = (uEye.w > 0.5 ? length(v) : -dot(v, vPosition)) - uOrigin;
   oDepth = (gl_FrontFacing ? -d : d) * uAttenuation;
+  if (uLayer > 0.0) {
+    float c = abs(dot(normalize(vNormal), normalize(v)));
+    oDepth += uLayer / max(c, 1.0 / kLongestWay);
+  }
 }

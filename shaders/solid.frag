@@ -3,6 +3,7 @@
 // water coat with a soft-box reflection, and a filtered key shadow. Output: highlights compressed,
 // square root of the linear colour (so that 8 bits suffice), premultiplied.
 // uBase, uSpecular(0..1), uRoughness(0.05..1), uTranslucency, uWetness, uMottle (0..1)
+// uRelief        float 0..1, height of bumps fixed to the tissue; uReliefSize metres between them
 // uOpacity       float 0..1; below 1 grazing rays are more opaque, as in glass
 // uSection       int   1 = capped cut: the same light whatever its angle, shadowed
 // uUnlit         int   1 = uBase as it is (outlines)
@@ -21,6 +22,7 @@ in vec3 vNormal;
 in vec3 vRest;
 uniform vec3 uBase;
 uniform float uSpecular, uRoughness, uTranslucency, uWetness, uMottle, uOpacity;
+uniform float uRelief, uReliefSize;
 uniform int uSection, uUnlit, uToneMap;
 uniform float uExposure;
 uniform vec4 uEye;
@@ -118,11 +120,15 @@ void main() {
   if (dot(n, v) < 0.0 && (uSection == 1 || !gl_FrontFacing)) n = -n;
   vec3 base = uBase;
   vec3 flatN = n;
-  if (uMottle > 0.0) {
-    vec4 fine = noise(vRest * 900.0), coarse = noise(vRest * 190.0);
-    base *= 1.0 + uMottle * (0.55 * (coarse.x - 0.5) + 0.35 * (fine.x - 0.5));
+  if (uMottle > 0.0 || uRelief > 0.0) {
+    // bumps smaller than a pixel would flicker: they fade first
+    float footprint = length(fwidth(vRest)) / uReliefSize;
+    float seen = clamp(1.6 - 1.6 * footprint, 0.0, 1.0);
+    vec4 fine = noise(vRest / uReliefSize), coarse = noise(vRest * 190.0);
+    base *= 1.0 + uMottle * (0.55 * (coarse.x - 0.5) + 0.35 * seen * (fine.x - 0.5));
     vec3 g = fine.yzw;  // rest axes: tissue turns little, so the slope is used as it is
-    n = normalize(n - 0.10 * uMottle * (g - dot(g, n) * n));
+    n = normalize(n - 0.35 * seen * uRelief * (g - dot(g, n) * n));
+    base *= 1.0 + 0.25 * seen * uRelief * (fine.x - 0.6);  // hollows are darker
   }
   float lit = shadow(flatN);
   float up = 0.5 + 0.5 * dot(n, uUp);

@@ -316,6 +316,12 @@ double Reader::number(const std::string& owner, const std::string& name) {
   return value;
 }
 
+double Reader::number(const std::string& owner, const std::string& name, double absent) {
+  const bool there = fine() && linked(owner) &&
+                     H5Aexists_by_name(file_, owner.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+  return there ? number(owner, name) : absent;
+}
+
 int Reader::whole(const std::string& owner, const std::string& name) {
   int value = 0;
   const Handle found = openAttribute(owner, name, H5T_INTEGER);

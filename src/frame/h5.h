@@ -117,6 +117,8 @@ class Reader {
   }
   std::string text(const std::string& owner, const std::string& name);
   double number(const std::string& owner, const std::string& name);
+  /// The same for a number that older files lack.
+  double number(const std::string& owner, const std::string& name, double absent);
   int whole(const std::string& owner, const std::string& name);
 
   bool fine() const { return !error_; }

@@ -88,6 +88,7 @@ void checkMeta(Checker& c, const History& h) {
   for (const auto& [what, value] : {std::pair{"cue_s", m.cue_s},
                                     {"density_kgm3", m.density_kgm3},
                                     {"viscosity_Pas", m.viscosity_Pas},
+                                    {"bariumSulfate_kgm3", m.bariumSulfate_kgm3},
                                     {"particleSpacing_m", m.particleSpacing_m},
                                     {"meanDensityError", m.meanDensityError},
                                     {"maxDensityError", m.maxDensityError},

@@ -96,6 +96,7 @@ struct Meta {
   double cue_s = 0;
   std::vector<double> cues_s;  ///< all cues, the first one first
   double density_kgm3 = 0, viscosity_Pas = 0;
+  double bariumSulfate_kgm3 = 0;  ///< in the bolus; 400 kg/m3 = 40 % w/v
   double particleSpacing_m = 0;
   double meanDensityError = 0, maxDensityError = 0;  ///< over all particles and steps, film apart
   double shareAboveTenPercent = 0;                   ///< particle-steps with density error > 10 %

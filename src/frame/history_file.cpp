@@ -57,6 +57,7 @@ void writeMeta(h5::Writer& w, const Meta& m) {
   w.number("/meta", "cue_s", m.cue_s);
   w.number("/meta", "density_kgm3", m.density_kgm3);
   w.number("/meta", "viscosity_Pas", m.viscosity_Pas);
+  w.number("/meta", "barium_sulfate_kgm3", m.bariumSulfate_kgm3);
   w.number("/meta", "particle_spacing_m", m.particleSpacing_m);
   w.number("/meta", "mean_density_error", m.meanDensityError);
   w.number("/meta", "max_density_error", m.maxDensityError);

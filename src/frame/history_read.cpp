@@ -68,6 +68,8 @@ void readMeta(h5::Reader& r, Meta& m) {
   m.cue_s = r.number("/meta", "cue_s");
   m.density_kgm3 = r.number("/meta", "density_kgm3");
   m.viscosity_Pas = r.number("/meta", "viscosity_Pas");
+  constexpr double kUsual_kgm3 = 400;  // files older than this entry: the usual 40 % w/v
+  m.bariumSulfate_kgm3 = r.number("/meta", "barium_sulfate_kgm3", kUsual_kgm3);
   m.particleSpacing_m = r.number("/meta", "particle_spacing_m");
   m.meanDensityError = r.number("/meta", "mean_density_error");
   m.maxDensityError = r.number("/meta", "max_density_error");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
+#include <map>
 
 #include "core/file.h"
 #include "frame/exporter.h"
@@ -12,6 +13,7 @@
 #include "pipeline/pipeline.h"
 #include "pipeline/simulation.h"
 #include "pipeline/swallow_sheet.h"
+#include "render/renderer.h"
 #include "scene/bolus_file.h"
 #include "scene/file_kind.h"
 #include "scene/mapping_file.h"
@@ -165,7 +167,7 @@ namespace {
 Result<void> checkOne(const RunOptions& o, const std::filesystem::path& f) {
   auto kind = scene::fileKind(f);
   if (!kind) return std::unexpected(kind.error());
-  if (*kind != scene::FileKind::other) return scene::checkFile(f, *kind);
+  if (*kind != scene::FileKind::other) return scene::checkFile(f, *kind, o.presetsFolder());
   const auto verdict = [](const auto& result) {
     return result ? Result<void>{} : std::unexpected(result.error());
   };
@@ -176,6 +178,42 @@ Result<void> checkOne(const RunOptions& o, const std::filesystem::path& f) {
       return verdict(loadScene(at));
     }
   return verdict(scene::loadSwallow(f));
+}
+}  // namespace
+
+namespace {
+// Every view of the preset over every frame: does it show what it promises?
+Result<void> checkViews(const RunOptions& o, const std::filesystem::path& run, Progress& progress) {
+  auto preset = scene::loadPreset(o.presetsFolder(), o.preset);
+  if (!preset) return std::unexpected(preset.error());
+  auto history = frame::loadHistory(run);
+  if (!history) return std::unexpected(history.error());
+  auto renderer = render::Renderer::create(o.data / "shaders", *preset);
+  if (!renderer) return std::unexpected(renderer.error());
+  std::vector<std::string> losses;
+  for (const auto& [view, def] : preset->views) {
+    if (def.shows.empty()) continue;
+    progress.stage(fmt::format("{}: {}", run.string(), view));
+    std::map<std::string, std::pair<render::Loss, int>> worst;  // by structure, with its frame
+    for (int k = 0; k < history->frames(); ++k) {
+      if (interrupted()) return std::unexpected(interruptedError());
+      auto lost = renderer->lost(*history, k, view);
+      if (!lost) return std::unexpected(lost.error());
+      for (const render::Loss& loss : *lost) {
+        const auto it = worst.find(loss.structure);
+        if (it == worst.end() || loss.pixels < it->second.first.pixels)
+          worst[loss.structure] = {loss, k};
+      }
+      progress.update(static_cast<double>(k + 1) / history->frames());
+    }
+    for (const auto& [structure, found] : worst)
+      losses.push_back(fmt::format("view '{}' loses '{}': {} pixels at frame {}, {} expected", view,
+                                   structure, found.first.pixels, found.second,
+                                   found.first.expected));
+  }
+  if (losses.empty()) return {};
+  return failure(run.string(), fmt::format("{}", fmt::join(losses, "\n  ")),
+                 "Move the camera or the cuts of the preset, or lower what the view \"shows\".");
 }
 }  // namespace
 
@@ -193,7 +231,8 @@ Result<void> check(const RunOptions& o, Progress& progress) {
                           "Name a scene folder or a file.");
     }
     for (const auto& f : files) {
-      if (auto ok = checkOne(o, f); !ok) return ok;
+      auto ok = f.extension() == ".h5" ? checkViews(o, f, progress) : checkOne(o, f);
+      if (!ok) return ok;
       progress.print(f.string() + ": good\n");
     }
   }

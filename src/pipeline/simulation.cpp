@@ -225,6 +225,7 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
     fluid = file->fluid;
     m.bolus = file->name;
     m.density_kgm3 = fluid.density_kgm3;
+    m.bariumSulfate_kgm3 = file->bariumSulfate_kgm3;
     m.viscosity_Pas = bolus::apparentViscosity_Pas(fluid, 50);  // at 50/s, clinical-reference 4
     scene->files.push_back(o.bolus.ends_with(".json") ? std::filesystem::path(o.bolus)
                                                       : o.scenesFolder() / "boluses.json");

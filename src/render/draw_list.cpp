@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/digest.h"
+#include "render/body_outline.h"
 #include "render/fluid_surface.h"
 
 namespace swallowclip::render {
@@ -60,6 +61,14 @@ Range append(DrawList& list, const std::vector<Vertex>& vertices,
   return r;
 }
 
+std::vector<std::uint32_t> corners(std::span<const Triangle> triangles) {
+  std::vector<std::uint32_t> indices;
+  indices.reserve(3 * triangles.size());
+  for (const Triangle& t : triangles)
+    for (int v : t) indices.push_back(static_cast<std::uint32_t>(v));
+  return indices;
+}
+
 Range appendSoup(DrawList& list, const std::vector<Vertex>& vertices) {
   std::vector<std::uint32_t> indices(vertices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
@@ -70,10 +79,12 @@ void addSections(DrawList& list, DrawItem& item, const std::vector<Triangle>& tr
                  const std::vector<Vec3f>& positions, float width) {
   item.fans.resize(item.cuts.size());
   item.outlines.resize(item.cuts.size());
+  item.fanBounds.resize(item.cuts.size());
   for (std::size_t k = 0; k < item.cuts.size(); ++k) {
     const CutPlane& c = item.cuts[k];
     if (!c.cap) continue;
     const auto segments = sectionSegments(triangles, positions, c.normal, c.offset);
+    for (const Vec3f& p : segments) item.fanBounds[k].add(p);
     item.fans[k] = appendSoup(list, sectionFan(segments, c.normal));
     // the lift keeps ribbons in front of caps at any view angle, and is far below a pixel
     if (width > 0)
@@ -101,6 +112,7 @@ void addStructure(DrawList& list, const frame::StructureTrack& track, int frame,
                   const DrawMesh& mesh, const RenderPreset& preset, const ViewDef& view) {
   DrawItem item;
   item.name = track.name;
+  item.substance = track.material;
   item.material = &preset.materialFor(track.name, track.material);
   item.opacity = item.material->opacity;
   if (auto it = view.ghosted.find(track.name); it != view.ghosted.end()) item.opacity = it->second;
@@ -168,22 +180,42 @@ void addBolus(DrawList& list, const frame::History& h, int frame, const RenderPr
   if (s.triangles.empty()) return;
   DrawItem item;
   item.name = "bolus";
-  item.material = &preset.bolus;
-  item.opacity = preset.bolus.opacity;
+  item.material = &preset.bolusFor(h.meta.viscosity_Pas);
+  item.opacity = item.material->opacity;
   std::vector<Vertex> vertices;
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     vertices.push_back({s.positions[i], s.normals[i], s.positions[i]});
     item.bounds.add(s.positions[i]);
   }
   if (!cutItem(item, view)) return;
-  std::vector<std::uint32_t> indices;
-  for (const Triangle& t : s.triangles)
-    for (int v : t) indices.push_back(static_cast<std::uint32_t>(v));
   item.closed = capped(item);
-  item.mesh = append(list, vertices, keptIndices(indices, vertices, item.cuts));
+  item.mesh = append(list, vertices, keptIndices(corners(s.triangles), vertices, item.cuts));
   addSections(list, item, s.triangles, s.positions, preset.sectionOutline_m);
   list.bounds.add(item.bounds);
   list.solid.push_back(std::move(item));
+}
+// The lumen's air, and the skin of head and neck: whole, seen by X-rays only.
+void addFluoroscopy(DrawList& list, const frame::History& h, int frame, const RenderPreset& preset,
+                    const ViewDef& view) {
+  const auto add = [&](const char* name, std::span<const Triangle> triangles,
+                       std::span<const Vec3f> positions) {
+    DrawItem item;
+    item.name = name;
+    std::vector<Vertex> vertices;
+    for (const Vec3f& p : positions) {
+      vertices.push_back({p, Vec3f::Zero(), p});  // lengths need no normals
+      list.bounds.add(p);
+    }
+    item.mesh = append(list, vertices, corners(triangles));
+    return item;
+  };
+  list.referenceDepth = view.referenceDepth;
+  list.barium_kgm3 = h.meta.bariumSulfate_kgm3;
+  if (!preset.fluoro.body) return;
+  if (!h.skin.positions.empty())
+    list.air.push_back(add("lumen", h.skin.triangles, h.skin.positions[frame]));
+  const ClosedSurface body = bodyOutline();
+  list.body.push_back(add("body", body.triangles, body.positions));
 }
 }  // namespace
 
@@ -234,6 +266,7 @@ DrawList buildDrawList(const frame::History& history, int frame, const Prepared&
   std::sort(list.ghost.begin(), list.ghost.end(),
             [&](const DrawItem& a, const DrawItem& b) { return depth(a) < depth(b); });
   addBolus(list, history, frame, preset, view);
+  if (view.style == Style::fluoro) addFluoroscopy(list, history, frame, preset, view);
   if (list.restBounds.empty()) list.restBounds = list.bounds;
   if (!list.bounds.empty()) {
     list.restBounds.low.array() -= kRoomToMove_m;
@@ -241,5 +274,18 @@ DrawList buildDrawList(const frame::History& history, int frame, const Prepared&
     list.bounds.add(list.restBounds);
   }
   return list;
+}
+
+std::vector<int> nearestFirst(const std::vector<DrawItem>& items, const Vec3f& back) {
+  std::vector<std::pair<float, int>> order;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    float depth = 1e9f;
+    for (int k = 0; k < 8; ++k) depth = std::min(depth, -back.dot(items[i].bounds.corner(k)));
+    order.emplace_back(depth, static_cast<int>(i));
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<int> indices;
+  for (const auto& [depth, index] : order) indices.push_back(index);
+  return indices;
 }
 }  // namespace swallowclip::render

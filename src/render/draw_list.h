@@ -26,12 +26,14 @@ struct Range {
 
 struct DrawItem {
   std::string name;
+  std::string substance;               ///< material name as in the scene
   const Material* material = nullptr;  ///< lives in the preset
   float opacity = 1;
   bool closed = false;  ///< its back faces never show, but for uncapped cuts
   Range mesh;
   std::vector<CutPlane> cuts;         ///< at most 3, those that touch the mesh
   std::vector<Range> fans, outlines;  ///< [cut] section to fill and its border; may be empty
+  std::vector<Bounds> fanBounds;      ///< [cut]
   Bounds bounds;
 };
 
@@ -40,8 +42,11 @@ struct DrawList {
   std::vector<std::uint32_t> indices;
   std::vector<DrawItem> solid;  ///< in order of section priority, the bolus last
   std::vector<DrawItem> ghost;  ///< back to front as on the first frame, so that order never flips
-  Bounds bounds;                ///< everything in view at this frame
-  Bounds restBounds;            ///< the same at the first frame, with room to move: fixes shadows
+  std::vector<DrawItem> air, body;  ///< fluoroscopy: the lumen, and the skin of head and neck
+  double barium_kgm3 = 0;           ///< barium sulfate in the bolus
+  float referenceDepth = 2.5f;      ///< optical depth that the exposure is set for
+  Bounds bounds;                    ///< everything in view at this frame
+  Bounds restBounds;  ///< the same at the first frame, with room to move: fixes shadows
 };
 
 /// Draw meshes of a history, made once.
@@ -54,6 +59,9 @@ Prepared prepare(const frame::History& history, double creaseAngle_rad);
 
 /// Vertex positions of a structure at a frame.
 std::vector<Vec3f> positionsAt(const frame::StructureTrack& track, int frame);
+
+/// Indices of the items by the depth of their nearest corner; `back` points to the viewer.
+std::vector<int> nearestFirst(const std::vector<DrawItem>& items, const Vec3f& back);
 
 DrawList buildDrawList(const frame::History& history, int frame, const Prepared& prepared,
                        const RenderPreset& preset, const ViewDef& view);

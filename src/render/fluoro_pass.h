@@ -1,21 +1,32 @@
 // SPDX-License-Identifier: MIT
-// Simulated videofluoroscopy: every mesh whole and transparent, by Beer-Lambert's law along each
-// ray. Overlapping bodies add; the soft tissue around is a uniform slab.
+// Simulated videofluoroscopy: Beer-Lambert's law along each ray through whole meshes, then what a
+// detector makes of it (scatter, blades, quanta, light spread) and what a screen shows. In front of
+// the body is air; the body is soft tissue wherever nothing else is modelled; the lumen is air
+// until the bolus fills it. Overlapping bodies add.
 #pragma once
 #include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
-#include "core/image.h"
-#include "render/draw_list.h"
-#include "render/surface_pass.h"
+#include "render/float_image.h"
+#include "render/gpu_mesh.h"
 
 namespace swallowclip::render {
 
 class FluoroPass {
  public:
   Result<void> create(const std::filesystem::path& shaderDir, const RenderPreset& preset);
-  /// `frame` seeds the grain.
+  /// `frame` keys the quantum noise.
   Result<Image> draw(const DrawList& list, const Camera& camera, const RenderPreset& preset,
                      int frame);
+  /// The detector's signal relative to the open field, before the screen, for measuring.
+  Result<FloatImage> signal(const DrawList& list, const Camera& camera, const RenderPreset& preset,
+                            int frame);
+
+  /// Pixels in which a structure adds contrast, by itself and within the blades.
+  Result<std::map<std::string, int>> visiblePixels(const DrawList& list, const Camera& camera,
+                                                   const RenderPreset& preset);
 
   FluoroPass() = default;
   ~FluoroPass();
@@ -23,8 +34,17 @@ class FluoroPass {
   FluoroPass& operator=(const FluoroPass&) = delete;
 
  private:
-  Program length_, display_;
-  Target depth_, picture_;
+  /// All of the scene, or (when `only` is not empty) one structure.
+  Result<void> drawDepth(const DrawList& list, const Camera& camera, const RenderPreset& preset,
+                         const std::string& only = "");
+  std::vector<float> read(const Target& from) const;
+  Result<const Target*> drawSignal(const DrawList& list, const Camera& camera,
+                                   const RenderPreset& preset, int frame);
+  void blur(const Target& from, const Target& by, const Target& to, float sigma_px);
+  void cover(const Target& to);
+
+  Program length_, scatter_, blur_, detector_, display_;
+  Target depth_, scatterA_, scatterB_, signalA_, signalB_, picture_;
   GpuMesh mesh_;
   GLuint emptyArray_ = 0;
 };

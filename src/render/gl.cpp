@@ -18,6 +18,14 @@ std::string infoLog(GLuint id, GetLength length, GetText text) {
   return log;
 }
 
+// ":LINE" out of a log such as "0:12(7): error: ...", as Mesa writes it; else nothing.
+std::string lineOf(const std::string& log) {
+  const std::size_t colon = log.find(':'), open = log.find('(', colon);
+  if (colon == std::string::npos || open == std::string::npos) return "";
+  const std::string line = log.substr(colon, open - colon);
+  return line.find_first_not_of("0123456789", 1) == std::string::npos ? line : "";
+}
+
 Result<GLuint> compile(const std::filesystem::path& file, GLenum stage) {
   const auto source = readFile(file);
   if (!source) return std::unexpected(source.error());
@@ -30,7 +38,7 @@ Result<GLuint> compile(const std::filesystem::path& file, GLenum stage) {
   if (ok) return id;
   const std::string log = infoLog(id, glGetShaderiv, glGetShaderInfoLog);
   glDeleteShader(id);
-  return usageError(file.string(), "the shader does not compile: " + log,
+  return usageError(file.string() + lineOf(log), "the shader does not compile: " + log,
                     "Mend the line named, or restore the file.");
 }
 }  // namespace
@@ -102,8 +110,7 @@ Result<void> Target::create(const char* what, int width, int height, int samples
   glGenFramebuffers(1, &id_);
   glBindFramebuffer(GL_FRAMEBUFFER, id_);
   if (colourFormat) {
-    const bool exact = colourFormat == GL_R32F;
-    colour_.create(colourFormat, width, height, samples, exact ? GL_NEAREST : GL_LINEAR);
+    colour_.create(colourFormat, width, height, samples, GL_LINEAR);
     glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, colour_.id(), 0);
   } else {
     glDrawBuffer(GL_NONE);

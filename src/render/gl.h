@@ -42,6 +42,7 @@ class Program {
   void set(const char* name, int v) { glUniform1i(at(name), v); }
   void set(const char* name, float v) { glUniform1f(at(name), v); }
   void set(const char* name, const Eigen::Vector2f& v) { glUniform2fv(at(name), 1, v.data()); }
+  void set(const char* name, const Eigen::Vector2i& v) { glUniform2iv(at(name), 1, v.data()); }
   void set(const char* name, const Vec3f& v) { glUniform3fv(at(name), 1, v.data()); }
   void set(const char* name, const Eigen::Vector4f& v) { glUniform4fv(at(name), 1, v.data()); }
   void set(const char* name, const Mat4f& m) {

@@ -12,6 +12,16 @@ const Material& RenderPreset::materialFor(const std::string& structure,
   return fallback;
 }
 
+const char* consistencyOf(double viscosity_Pas) {
+  return kConsistencies[(viscosity_Pas >= 0.05) + (viscosity_Pas >= 0.35) +
+                        (viscosity_Pas >= 1.75)];
+}
+
+const Material& RenderPreset::bolusFor(double viscosity_Pas) const {
+  const auto it = bolusByConsistency.find(consistencyOf(viscosity_Pas));
+  return it == bolusByConsistency.end() ? bolus : it->second;
+}
+
 namespace {
 std::string validateView(const std::string& name, const ViewDef& v) {
   const Vec3 gaze = v.eye_m - v.target_m;
@@ -38,6 +48,9 @@ std::string RenderPreset::validate() const {
     return fmt::format("shadow map of {} px not in 64..4096", light.shadowMap_px);
   if (light.key.direction.norm() < 1e-6f || light.fill.direction.norm() < 1e-6f)
     return "a light has no direction";
+  if (fluoro.black <= fluoro.white)
+    return fmt::format("fluoro window from {} to {}: black must lie deeper than white",
+                       fluoro.white, fluoro.black);
   if (views.empty()) return "no views";
   for (const auto& [key, view] : views)
     if (auto wrong = validateView(key, view); !wrong.empty()) return wrong;

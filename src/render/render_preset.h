@@ -24,8 +24,9 @@ struct Material {
   float translucency = 0.0f;  ///< light wrapping past the terminator, tinted by the base colour
   float wetness = 0.0f;       ///< strength of the thin glossy water coat
   float mottle = 0.0f;        ///< contrast of fine tissue-fixed colour variation
-  float opacity = 1.0f;       ///< below 1 drawn as ghost in every view
-  float attenuation_per_m = 20.0f;  ///< fluoro only: linear X-ray attenuation
+  float relief = 0.0f;        ///< height of fine bumps fixed to the tissue: papillae, rugae, folds
+  float reliefSize_m = 1.2e-3f;  ///< from bump to bump
+  float opacity = 1.0f;          ///< below 1 drawn as ghost in every view
 };
 
 /// Directional light; direction points from the scene to the light, in view axes
@@ -86,22 +87,40 @@ struct ViewDef {
   Style style = Style::surface;
   Projection projection = Projection::perspective;
   Vec3 eye_m{0.25, -0.25, 0.1}, target_m{0, 0, -0.05}, up{0, 0, 1};
-  double fovY_rad = 0.5;                 ///< perspective: full vertical angle
-  double orthoHeight_m = 0.16;           ///< orthographic: metres over the picture's height
-  std::vector<ClipRule> cuts;            ///< at most 3 may apply to one structure
+  double fovY_rad = 0.5;        ///< perspective: full vertical angle
+  float referenceDepth = 2.5f;  ///< fluoro: optical depth of the exposure; 2.5 = 115 mm soft tissue
+  double orthoHeight_m = 0.16;  ///< orthographic: metres over the picture's height
+  std::vector<ClipRule> cuts;   ///< at most 3 may apply to one structure
   std::vector<std::string> hidden;       ///< structures not drawn
   std::map<std::string, float> ghosted;  ///< structure -> opacity 0..1
+  /// Structure -> least visible pixels in a picture of 720 lines, in every frame; see
+  /// Renderer::lost. "bolus" counts while more than half of it is above the esophageal sphincter.
+  std::map<std::string, int> shows{};
 };
 
-/// Simulated videofluoroscopy (Beer-Lambert), style fluoro.
+/// Simulated videofluoroscopy, style fluoro: the machine and its screen. What tissues attenuate is
+/// physics and stands in xray.h.
 struct FluoroDef {
-  float softTissue_per_m = 20.0f;  ///< water at 60-70 keV, NIST XCOM (Berger 2010): 0.20 /cm
-  float bodyThickness_m = 0.10f;   ///< unmodelled tissue around, assumed 0.08..0.14
-  float exposure = 1.0f;           ///< display gain
-  float noise = 0.02f;             ///< relative, of unattenuated signal
-  float blur_px = 1.2f;            ///< detector blur at 720 lines
-  bool boneDark = true;            ///< absorbers dark, as on a fluoroscopy screen
+  bool body = true;  ///< soft tissue around the scene; false: bodies stand in air
+  /// Quanta detected behind the view's reference depth in one frame: 40 nGy at the detector
+  /// (assumed 20..100) times 30174 quanta / (mm2 uGy) (IEC 62220-1, RQA5) times DQE 0.65 (assumed).
+  /// 0 = no noise.
+  float quanta_per_m2 = 785e6f;
+  float scatterToPrimary = 0.4f;   ///< at the reference depth, behind a grid; assumed 0.2..0.8
+  float scatterRadius_m = 22e-3f;  ///< standard deviation of its spread; assumed 15..40 mm
+  float blur_m = 0.30e-3f;         ///< light spread in CsI and focal spot; assumed 0.2..0.5 mm
+  float fieldWidth_m = 0.165f, fieldHeight_m = 0.150f;  ///< collimated field; 0 = all open
+  float fieldCorner_m = 0.012f, penumbra_m = 1.2e-3f;
+  float white = -1.25f, black = 0.85f;  ///< ends of the screen's window about that depth
+  float equalisation = 0.35f;           ///< share of smooth depth taken off, 0..1; assumed
+  float gamma = 1.15f;                  ///< of the screen curve
+  bool boneDark = true;                 ///< absorbers dark, as on a fluoroscopy screen
 };
+
+/// Bolus consistencies by apparent viscosity at 50 1/s: < 0.05, 0.35, 1.75 Pa.s and above (National
+/// Dysphagia Diet 2002).
+inline constexpr const char* kConsistencies[] = {"thin", "nectar", "honey", "pudding"};
+const char* consistencyOf(double viscosity_Pas);
 
 struct RenderPreset {
   std::string name = "training";
@@ -117,7 +136,9 @@ struct RenderPreset {
   std::map<std::string, Material> materials;   ///< by material name (muscle, bone, ...)
   std::map<std::string, Material> structures;  ///< by structure name; goes before `materials`
   Material fallback;                           ///< for unknown materials
-  Material bolus;
+  Material bolus;                              ///< where no consistency has a look of its own
+  std::map<std::string, Material> bolusByConsistency;  ///< by word of kConsistencies
+  std::map<std::string, Colour> palette;               ///< colours by name, as the files use them
   std::vector<std::string> sectionPriority;  ///< who wins where sections overlap, first wins
 
   LightDef light;
@@ -129,6 +150,7 @@ struct RenderPreset {
 
   /// The look of a structure: by name, else by material, else the fallback.
   const Material& materialFor(const std::string& structure, const std::string& material) const;
+  const Material& bolusFor(double viscosity_Pas) const;
   /// "" when usable, else what is wrong (odd size, fps < 30, zero direction ...).
   std::string validate() const;
 };

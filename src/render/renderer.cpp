@@ -6,6 +6,7 @@
 #include "render/context.h"
 #include "render/draw_list.h"
 #include "render/fluoro_pass.h"
+#include "render/plain_pass.h"
 #include "render/surface_pass.h"
 
 namespace swallowclip::render {
@@ -15,6 +16,7 @@ struct Renderer::Impl {
   RenderPreset preset;
   SurfacePass surface;
   FluoroPass fluoro;
+  PlainPass plain;
   Prepared prepared;
 };
 
@@ -42,6 +44,8 @@ Result<Renderer> Renderer::create(const std::filesystem::path& shaderDir, Render
   if (auto ok = impl->surface.create(shaderDir, impl->preset); !ok)
     return std::unexpected(ok.error());
   if (auto ok = impl->fluoro.create(shaderDir, impl->preset); !ok)
+    return std::unexpected(ok.error());
+  if (auto ok = impl->plain.create(shaderDir, impl->preset); !ok)
     return std::unexpected(ok.error());
   return Renderer(std::move(impl));
 }
@@ -72,8 +76,15 @@ std::string unusable(const frame::History& h, int frame) {
 }
 }  // namespace
 
-Result<Image> Renderer::draw(const frame::History& history, int frame, const std::string& view,
-                             const CaptionText& caption) {
+// One frame as triangles and a camera, with the context current.
+struct Renderer::Scene {
+  const ViewDef* view;
+  DrawList list;
+  Camera camera;
+};
+
+Result<Renderer::Scene> Renderer::prepareScene(const frame::History& history, int frame,
+                                               const std::string& view) {
   const RenderPreset& preset = impl_->preset;
   const auto found = preset.views.find(view);
   if (found == preset.views.end()) {
@@ -93,16 +104,74 @@ Result<Image> Renderer::draw(const frame::History& history, int frame, const std
   if (auto ok = impl_->context->makeCurrent(); !ok) return std::unexpected(ok.error());
   if (impl_->prepared.meshes.empty() || impl_->prepared.digest != topologyDigest(history))
     impl_->prepared = prepare(history, preset.creaseAngle_rad);
-  DrawList list = buildDrawList(history, frame, impl_->prepared, preset, found->second);
-  const Camera camera = makeCamera(found->second, preset.width, preset.height, list.bounds);
-  auto image = found->second.style == Style::fluoro
-                   ? impl_->fluoro.draw(list, camera, preset, frame)
-                   : impl_->surface.draw(list, camera, preset);
+  Scene s{
+      &found->second, buildDrawList(history, frame, impl_->prepared, preset, found->second), {}};
+  s.camera = makeCamera(found->second, preset.width, preset.height, s.list.bounds);
+  return s;
+}
+
+Result<Image> Renderer::draw(const frame::History& history, int frame, const std::string& view,
+                             const CaptionText& caption) {
+  auto scene = prepareScene(history, frame, view);
+  if (!scene) return std::unexpected(scene.error());
+  const RenderPreset& preset = impl_->preset;
+  auto image = scene->view->style == Style::fluoro
+                   ? impl_->fluoro.draw(scene->list, scene->camera, preset, frame)
+                   : impl_->surface.draw(scene->list, scene->camera, preset);
   if (!image) return image;
   CaptionText words = caption;
-  if (words.viewLabel.empty()) words.viewLabel = found->second.captionTitle;
+  if (words.viewLabel.empty()) words.viewLabel = scene->view->captionTitle;
   if (auto ok = drawCaptions(*image, preset.caption, words); !ok)
     return std::unexpected(ok.error());
   return image;
+}
+
+Result<Image> Renderer::drawPlain(const frame::History& history, int frame,
+                                  const std::string& view) {
+  auto scene = prepareScene(history, frame, view);
+  if (!scene) return std::unexpected(scene.error());
+  return impl_->plain.draw(scene->list, scene->camera);
+}
+
+Result<FloatImage> Renderer::signal(const frame::History& history, int frame,
+                                    const std::string& view) {
+  auto scene = prepareScene(history, frame, view);
+  if (!scene) return std::unexpected(scene.error());
+  return impl_->fluoro.signal(scene->list, scene->camera, impl_->preset, frame);
+}
+
+Result<std::map<std::string, int>> Renderer::visiblePixels(const frame::History& history, int frame,
+                                                           const std::string& view) {
+  auto scene = prepareScene(history, frame, view);
+  if (!scene) return std::unexpected(scene.error());
+  return scene->view->style == Style::fluoro
+             ? impl_->fluoro.visiblePixels(scene->list, scene->camera, impl_->preset)
+             : impl_->surface.visiblePixels(scene->list, scene->camera, impl_->preset);
+}
+
+namespace {
+// A bolus that is mostly swallowed need not be seen any more.
+bool expected(const frame::History& h, int frame, const std::string& structure) {
+  if (structure != "bolus") return true;
+  if (h.bolus.positions.empty()) return false;
+  if (h.bolus.state.empty()) return true;
+  const auto& state = h.bolus.state[static_cast<std::size_t>(frame)];
+  const auto gone = std::count(state.begin(), state.end(), frame::ParticleState::swallowed);
+  return 2 * static_cast<std::size_t>(gone) < state.size();
+}
+}  // namespace
+
+Result<std::vector<Loss>> Renderer::lost(const frame::History& history, int frame,
+                                         const std::string& view) {
+  auto seen = visiblePixels(history, frame, view);
+  if (!seen) return std::unexpected(seen.error());
+  const double lines = impl_->preset.height / 720.0;
+  std::vector<Loss> losses;
+  for (const auto& [structure, least720] : impl_->preset.views.at(view).shows) {
+    const int least = static_cast<int>(least720 * lines * lines), pixels = (*seen)[structure];
+    if (pixels < least && expected(history, frame, structure))
+      losses.push_back({structure, pixels, least});
+  }
+  return losses;
 }
 }  // namespace swallowclip::render

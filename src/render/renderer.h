@@ -4,16 +4,25 @@
 // context and belongs to one thread; several may exist.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "core/image.h"
 #include "frame/history.h"
 #include "render/captions.h"
+#include "render/float_image.h"
 #include "render/render_preset.h"
 
 namespace swallowclip::render {
+
+/// A structure of which a view shows less than it promises.
+struct Loss {
+  std::string structure;
+  int pixels = 0, expected = 0;
+};
 
 class Renderer {
  public:
@@ -27,11 +36,24 @@ class Renderer {
   Result<Image> draw(const frame::History& history, int frame, const std::string& view,
                      const CaptionText& caption);
 
+  /// The same triangles in one light, without cuts, shadows and words: what a frame costs at least.
+  Result<Image> drawPlain(const frame::History& history, int frame, const std::string& view);
+  /// What the detector of a fluoroscopy view receives, relative to the open field, for measuring.
+  Result<FloatImage> signal(const frame::History& history, int frame, const std::string& view);
+
+  /// Pixels in which each structure of a view is seen at a frame (without captions).
+  Result<std::map<std::string, int>> visiblePixels(const frame::History& history, int frame,
+                                                   const std::string& view);
+  /// What a view promises (ViewDef::shows) and does not keep at a frame.
+  Result<std::vector<Loss>> lost(const frame::History& history, int frame, const std::string& view);
+
   const RenderPreset& preset() const;
   std::string description() const;  ///< driver and version
 
  private:
   struct Impl;
+  struct Scene;
+  Result<Scene> prepareScene(const frame::History& history, int frame, const std::string& view);
   explicit Renderer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

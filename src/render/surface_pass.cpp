@@ -3,18 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "render/colour_vision.h"
 
 namespace swallowclip::render {
 namespace {
 
 constexpr float kAoRange = 0.4f;          // depths this share of the radius apart are not mixed
 constexpr float kShadowBias_m = 0.8e-3f;  // about 3 texels of a 1024 map over 250 mm
-
-Vec3f linear(const Colour& srgb) {  // IEC 61966-2-1
-  return srgb.unaryExpr(
-      [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });
-}
 
 void setClips(Program& p, const std::vector<CutPlane>& cuts, int without = -1) {
   static constexpr const char* kNames[] = {"uClip[0]", "uClip[1]", "uClip[2]"};
@@ -55,53 +51,6 @@ void scissorTo(const Bounds& b, const Camera& camera, int width, int height) {
   glScissor(x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0));
 }
 }  // namespace
-
-GpuMesh::~GpuMesh() {
-  if (!array_) return;
-  glDeleteVertexArrays(1, &array_);
-  glDeleteBuffers(1, &vertices_);
-  glDeleteBuffers(1, &indices_);
-}
-
-void GpuMesh::create() {
-  glGenVertexArrays(1, &array_);
-  glGenBuffers(1, &vertices_);
-  glGenBuffers(1, &indices_);
-  glBindVertexArray(array_);
-  glBindBuffer(GL_ARRAY_BUFFER, vertices_);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
-  for (unsigned k = 0; k < 3; ++k) {
-    glEnableVertexAttribArray(k);
-    glVertexAttribPointer(k, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                          reinterpret_cast<const void*>(k * sizeof(Vec3f)));
-  }
-}
-
-void GpuMesh::upload(const std::vector<Vertex>& vertices,
-                     const std::vector<std::uint32_t>& indices) {
-  const auto bytes = [](const auto& v) { return static_cast<GLsizeiptr>(v.size() * sizeof(v[0])); };
-  glBindVertexArray(array_);
-  glBindBuffer(GL_ARRAY_BUFFER, vertices_);
-  glBufferData(GL_ARRAY_BUFFER, bytes(vertices), vertices.data(), GL_STREAM_DRAW);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes(indices), indices.data(), GL_STREAM_DRAW);
-}
-
-void GpuMesh::draw(const Range& r) const {
-  if (r.count == 0) return;
-  glBindVertexArray(array_);
-  const auto offset = static_cast<std::uintptr_t>(r.firstIndex) * sizeof(std::uint32_t);
-  glDrawElementsBaseVertex(GL_TRIANGLES, r.count, GL_UNSIGNED_INT,
-                           reinterpret_cast<const void*>(offset), r.firstVertex);
-}
-
-Image readPicture(int width, int height) {
-  Image image(width, height), flipped(width, height);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, flipped.rgba.data());
-  const std::size_t bytes = static_cast<std::size_t>(width) * 4;
-  for (int y = 0; y < height; ++y) std::memcpy(image.row(y), flipped.row(height - 1 - y), bytes);
-  return image;
-}
 
 SurfacePass::~SurfacePass() {
   if (emptyArray_) glDeleteVertexArrays(1, &emptyArray_);
@@ -211,18 +160,27 @@ void SurfacePass::setLights(const Camera& camera, const RenderPreset& preset) {
   solid_.set("uShadowRadius", l.shadowSoftness_m / (2 * shadowRadius_m_));
   solid_.set("uShadowBias", kShadowBias_m);
   solid_.set("uUnlit", 0);
-  solid_.set("uExposure", preset.exposure);
-  solid_.set("uToneMap", preset.toneMap ? 1 : 0);
+  solid_.set("uExposure", id_ > 0 ? 1.0f : preset.exposure);
+  solid_.set("uToneMap", preset.toneMap && id_ == 0 ? 1 : 0);
   shadow_.depth().bind(0);
 }
 
 void SurfacePass::setMaterial(const Material& m, bool section, float opacity) {
+  if (id_ > 0) {  // the shader writes the square root of an unlit colour
+    const float level = static_cast<float>(id_) / 255.0f;
+    solid_.set("uUnlit", 1);
+    solid_.set("uBase", Vec3f(Vec3f::Constant(level * level)));
+    solid_.set("uOpacity", 1.0f);
+    return;
+  }
   solid_.set("uBase", linear(section ? m.sectionColour_srgb : m.baseColour_srgb));
   solid_.set("uSpecular", m.specular);
   solid_.set("uRoughness", std::clamp(m.roughness, 0.05f, 1.0f));
   solid_.set("uTranslucency", section ? 0.0f : m.translucency);
   solid_.set("uWetness", section ? 0.0f : m.wetness);
   solid_.set("uMottle", section ? 0.3f * m.mottle : m.mottle);
+  solid_.set("uRelief", section ? 0.0f : m.relief);
+  solid_.set("uReliefSize", m.reliefSize_m);
   solid_.set("uSection", section ? 1 : 0);
   solid_.set("uOpacity", opacity);
 }
@@ -234,8 +192,9 @@ void SurfacePass::drawCaps(const DrawItem& item, const Camera& camera) {
     const CutPlane& c = item.cuts[k];
     if (item.fans[k].count == 0 || !camera.sees(c.normal, c.offset)) continue;
     glEnable(GL_SCISSOR_TEST);
-    scissorTo(item.bounds, camera, scene_.width(), scene_.height());
-    glClear(GL_STENCIL_BUFFER_BIT);
+    scissorTo(item.fanBounds[static_cast<std::size_t>(k)], camera, scene_.width(), scene_.height());
+    // the cover below leaves the stencil empty again, but where another cut takes from it
+    if (item.cuts.size() > 1) glClear(GL_STENCIL_BUFFER_BIT);
     glEnable(GL_STENCIL_TEST);
     glStencilFunc(GL_ALWAYS, 0, 0xff);
     glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_DECR_WRAP, GL_DECR_WRAP);
@@ -249,11 +208,12 @@ void SurfacePass::drawCaps(const DrawItem& item, const Camera& camera) {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glEnable(GL_DEPTH_TEST);
     glStencilFunc(GL_NOTEQUAL, 0, 0xff);
-    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    glStencilOp(GL_KEEP, GL_ZERO, GL_ZERO);
     solid_.use();
     setMaterial(*item.material, true, 1.0f);
     setClips(solid_, item.cuts, k);
     mesh_.draw(quadFor(c));
+    if (item.cuts.size() > 1) glClear(GL_STENCIL_BUFFER_BIT);
     glDisable(GL_STENCIL_TEST);
     glDisable(GL_SCISSOR_TEST);
   }
@@ -274,24 +234,32 @@ void SurfacePass::drawOutlines(const DrawItem& item, const Camera& camera,
   }
 }
 
-void SurfacePass::drawSolids(const DrawList& list, const Camera& camera,
+void SurfacePass::drawSolids(const Target& to, const DrawList& list, const Camera& camera,
                              const RenderPreset& preset) {
-  scene_.bind();
+  to.bind();
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   glDepthFunc(GL_LESS);
   setLights(camera, preset);
+  const bool ids = id_ > 0;
+  // caps in order of priority; then the nearest meshes first, so that what they hide is not shaded
   for (const DrawItem& item : list.solid) {
     drawCaps(item, camera);
+    if (ids) ++id_;
+  }
+  id_ = ids ? 1 : 0;
+  for (const int index : nearestFirst(list.solid, camera.back)) {
+    const DrawItem& item = list.solid[static_cast<std::size_t>(index)];
+    if (ids) id_ = 1 + index;
     setMaterial(*item.material, false, 1.0f);
     setClips(solid_, item.cuts);
     cullBack(item.closed);  // caps hide every back face of a closed mesh
     mesh_.draw(item.mesh);
     cullBack(false);
   }
-  for (const DrawItem& item : list.solid) drawOutlines(item, camera, preset);
-  scene_.resolveTo(resolved_, GL_DEPTH_BUFFER_BIT);
-  scene_.bind();
+  if (ids) id_ = 1 + static_cast<int>(list.solid.size());
+  if (!ids)
+    for (const DrawItem& item : list.solid) drawOutlines(item, camera, preset);
 }
 
 // Depth first, so that only the nearest layer of a ghost is seen.
@@ -365,24 +333,66 @@ void SurfacePass::composite(const Camera& camera, const RenderPreset& preset) {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-Result<Image> SurfacePass::draw(DrawList& list, const Camera& camera, const RenderPreset& preset) {
+void SurfacePass::begin(DrawList& list) {
   for (int i = 0; i < 3; ++i) glEnable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
   glDisable(GL_CULL_FACE);
   glEnable(GL_MULTISAMPLE);
+  glEnable(GL_DEPTH_TEST);
   addQuads(list);
   mesh_.upload(list.vertices, list.indices);
+}
+
+void SurfacePass::end() {
+  for (int i = 0; i < 3; ++i) glDisable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
+}
+
+Result<Image> SurfacePass::draw(DrawList& list, const Camera& camera, const RenderPreset& preset) {
+  begin(list);
   drawShadowMap(list, camera, preset);
-  drawSolids(list, camera, preset);
+  drawSolids(scene_, list, camera, preset);
+  scene_.resolveTo(resolved_, GL_DEPTH_BUFFER_BIT);
+  scene_.bind();
   drawGhosts(list, camera, preset);
   scene_.resolveTo(resolved_, GL_COLOR_BUFFER_BIT);
-  for (int i = 0; i < 3; ++i) glDisable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
+  end();
   if (preset.ao.strength > 0) drawOcclusion(camera, preset);
   composite(camera, preset);
   picture_.bind();
   Image image = readPicture(preset.width, preset.height);
-  if (const GLenum e = glGetError(); e != GL_NO_ERROR)
-    return failure("OpenGL", fmt::format("error 0x{:04x} while drawing", e),
-                   "Report it with the preset and the driver's version.");
+  if (auto ok = checkedGl("surfaces"); !ok) return std::unexpected(ok.error());
   return image;
+}
+
+void SurfacePass::countIds(const std::vector<DrawItem>& items, int firstId,
+                           const RenderPreset& preset, std::map<std::string, int>& counts) {
+  const Image ids = readPicture(preset.width, preset.height);
+  for (std::size_t i = 0; i < ids.rgba.size(); i += 4)
+    if (const int k = ids.rgba[i] - firstId; k >= 0 && k < static_cast<int>(items.size()))
+      ++counts[items[static_cast<std::size_t>(k)].name];
+}
+
+Result<std::map<std::string, int>> SurfacePass::visiblePixels(DrawList& list, const Camera& camera,
+                                                              const RenderPreset& preset) {
+  constexpr std::size_t kMostIds = 255;  // of 8 bits, 0 is the background
+  if (list.solid.size() + list.ghost.size() > kMostIds)
+    return failure("visible pixels", fmt::format("more than {} structures", kMostIds),
+                   "Hide some in the view.");
+  begin(list);
+  id_ = 1;
+  drawSolids(resolved_, list, camera, preset);
+  std::map<std::string, int> counts;
+  countIds(list.solid, 1, preset, counts);
+  const int firstGhost = id_;
+  for (const DrawItem& item : list.ghost) {
+    setMaterial(*item.material, false, 1.0f);
+    setClips(solid_, item.cuts);
+    mesh_.draw(item.mesh);
+    ++id_;
+  }
+  countIds(list.ghost, firstGhost, preset, counts);
+  id_ = 0;
+  end();
+  if (auto ok = checkedGl("surfaces"); !ok) return std::unexpected(ok.error());
+  return counts;
 }
 }  // namespace swallowclip::render

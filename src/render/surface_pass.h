@@ -3,41 +3,32 @@
 // occlusion, composite. See the header comments in shaders/ for every uniform.
 #pragma once
 #include <filesystem>
+#include <map>
 
-#include "core/image.h"
 #include "render/draw_list.h"
-#include "render/gl.h"
+#include "render/gpu_mesh.h"
 
 namespace swallowclip::render {
-
-/// Vertex and index buffers filled anew for each frame.
-class GpuMesh {
- public:
-  GpuMesh() = default;
-  ~GpuMesh();
-  GpuMesh(const GpuMesh&) = delete;
-  GpuMesh& operator=(const GpuMesh&) = delete;
-  void create();
-  void upload(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
-  void draw(const Range& range) const;
-
- private:
-  GLuint array_ = 0, vertices_ = 0, indices_ = 0;
-};
-
-/// Reads the bound framebuffer, top row first.
-Image readPicture(int width, int height);
 
 class SurfacePass {
  public:
   Result<void> create(const std::filesystem::path& shaderDir, const RenderPreset& preset);
   Result<Image> draw(DrawList& list, const Camera& camera, const RenderPreset& preset);
+  /// Pixels in which each item of the list is the nearest, by name; ghosts cover nothing but
+  /// themselves. Without smoothing of edges.
+  Result<std::map<std::string, int>> visiblePixels(DrawList& list, const Camera& camera,
+                                                   const RenderPreset& preset);
 
  private:
   void drawShadowMap(const DrawList& list, const Camera& camera, const RenderPreset& preset);
   void setLights(const Camera& camera, const RenderPreset& preset);
   void setMaterial(const Material& m, bool section, float opacity);
-  void drawSolids(const DrawList& list, const Camera& camera, const RenderPreset& preset);
+  void drawSolids(const Target& to, const DrawList& list, const Camera& camera,
+                  const RenderPreset& preset);
+  void begin(DrawList& list);
+  void end();
+  void countIds(const std::vector<DrawItem>& items, int firstId, const RenderPreset& preset,
+                std::map<std::string, int>& counts);
   void drawCaps(const DrawItem& item, const Camera& camera);
   void drawOutlines(const DrawItem& item, const Camera& camera, const RenderPreset& preset);
   void drawGhosts(const DrawList& list, const Camera& camera, const RenderPreset& preset);
@@ -53,6 +44,7 @@ class SurfacePass {
   Mat4f shadowFromWorld_ = Mat4f::Identity();
   float shadowRadius_m_ = 1;
   std::vector<std::pair<CutPlane, Range>> quads_;
+  int id_ = 0;  ///< above 0 items are drawn in it, flat, instead of in their material
   GLuint emptyArray_ = 0;
 
  public:

@@ -30,6 +30,9 @@ std::string wordOf(std::string text) {
 
 BolusDef readBolus(const JsonNode& node, std::string name) {
   BolusDef def{std::move(name), node.text("description", ""), readFluid(node)};
+  // "% w/v" is grams in 100 mL; above 250 % the grains of 4.5 g/cm3 leave no room for water
+  constexpr double kKgm3PerPercent = 10;
+  def.bariumSulfate_kgm3 = node.number("barium_percentWv", 0, 250, 0) * kKgm3PerPercent;
   if (node.exists() && !isFileWord(def.name))
     node.fail("a bolus name has 1 to 40 lower-case letters, digits or '-', and is not \"none\"",
               "Rename it; it becomes part of file names.");

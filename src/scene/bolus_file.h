@@ -19,6 +19,7 @@ struct BolusDef {
   std::string name;         ///< as in file names: lower-case letters, digits, '-'
   std::string description;  ///< for captions and lists
   bolus::Fluid fluid;
+  double bariumSulfate_kgm3 = 0;  ///< contrast, seen by fluoroscopy only; 400 = 40 % w/v
 };
 
 /// All boluses of scenes/boluses.json, in file order.

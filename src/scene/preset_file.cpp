@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "scene/json_reader.h"
+#include "scene/palette_file.h"
 
 namespace swallowclip::scene {
 namespace {
 using namespace render;
 constexpr double kRadPerDeg = kPi / 180;
+const std::vector<std::string> kMaterials{"bone", "cartilage", "enamel", "mucosa", "muscle"};
 
 float unit(const JsonNode& node, std::string_view key, float defaultValue) {
   return static_cast<float>(node.number(key, 0, 1, defaultValue));
@@ -23,27 +25,6 @@ float length_m(const JsonNode& node, std::string_view key, double max_mm, float 
   return static_cast<float>(node.number(key, 0, max_mm) * kMetrePerMm);
 }
 
-/// "#rrggbb" or [r, g, b] with components 0 to 1.
-Colour colour(const JsonNode& node, std::string_view key, const Colour& defaultValue) {
-  if (!node.has(key)) return defaultValue;
-  const JsonNode value = node.member(key);
-  if (value.isArray()) {
-    const std::vector<double> c = value.asNumbers();
-    const bool inRange = std::ranges::all_of(c, [](double v) { return v >= 0 && v <= 1; });
-    if (c.size() == 3 && inRange) return Colour(float(c[0]), float(c[1]), float(c[2]));
-  } else {
-    const std::string text = value.asText();
-    if (text.size() == 7 && text[0] == '#' &&
-        text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos) {
-      const unsigned long rgb = std::stoul(text.substr(1), nullptr, 16);
-      return Colour(float(rgb >> 16 & 255), float(rgb >> 8 & 255), float(rgb & 255)) / 255.0f;
-    }
-  }
-  value.fail(fmt::format("\"{}\": not a colour", key),
-             "Write \"#rrggbb\" or [r, g, b] with 0 to 1.");
-  return defaultValue;
-}
-
 Vec3 direction(const JsonNode& node, std::string_view key, const Vec3& defaultValue) {
   const Vec3 v = node.vec3(key, defaultValue);
   if (v.norm() > 1e-6 && v.norm() < 1e6) return v;  // a direction may have any sane length
@@ -51,42 +32,71 @@ Vec3 direction(const JsonNode& node, std::string_view key, const Vec3& defaultVa
   return defaultValue;
 }
 
-Material readMaterial(const JsonNode& node, Material m) {
-  m.baseColour_srgb = colour(node, "baseColour", m.baseColour_srgb);
-  m.sectionColour_srgb = colour(node, "sectionColour", m.sectionColour_srgb);
+Material readMaterial(const JsonNode& node, Material m, const Palette& palette) {
+  m.baseColour_srgb = readColour(node, "baseColour", m.baseColour_srgb, palette);
+  m.sectionColour_srgb = readColour(node, "sectionColour", m.sectionColour_srgb, palette);
   m.roughness = static_cast<float>(node.number("roughness", 0.05, 1, m.roughness));
   m.specular = unit(node, "specular", m.specular);
   m.translucency = unit(node, "translucency", m.translucency);
   m.wetness = unit(node, "wetness", m.wetness);
   m.mottle = unit(node, "mottle", m.mottle);
+  m.relief = unit(node, "relief", m.relief);
+  m.reliefSize_m = length_m(node, "reliefSize_mm", 50, m.reliefSize_m);
   m.opacity = unit(node, "opacity", m.opacity);
-  m.attenuation_per_m = real(node, "attenuation_per_m", 1e4, m.attenuation_per_m);
   return m;
 }
 
 /// Own look of a structure; "like" names the material it starts from.
-void readStructures(const JsonNode& root, RenderPreset& preset) {
+void readStructures(const JsonNode& root, RenderPreset& preset, const Palette& palette) {
   std::vector<std::string> known;
   for (const auto& [name, look] : preset.materials) known.push_back(name);
   for (const auto& [name, node] : root.object("structures").members()) {
-    Material start = preset.fallback;
+    Material start = preset.structures.contains(name) ? preset.structures[name] : preset.fallback;
     if (node.has("like")) start = preset.materials[node.choice("like", known)];
-    preset.structures[name] = readMaterial(node, start);
+    preset.structures[name] = readMaterial(node, start, palette);
   }
 }
 
-DirectionalLight readLight(const JsonNode& node, DirectionalLight light) {
+void readMaterials(const JsonNode& root, RenderPreset& preset, const Palette& palette) {
+  if (root.has("fallback"))
+    preset.fallback = readMaterial(root.object("fallback"), preset.fallback, palette);
+  if (root.has("materials"))
+    for (const auto& [name, node] : root.object("materials").members()) {
+      if (std::ranges::find(kMaterials, name) == kMaterials.end()) {
+        const std::string near = nearestName(name, kMaterials);
+        node.fail(fmt::format("unknown material \"{}\"", name),
+                  near.empty() ? fmt::format("Known: {}.", fmt::join(kMaterials, ", "))
+                               : fmt::format("Did you mean \"{}\"?", near));
+      }
+      preset.materials[name] = readMaterial(node, preset.materials[name], palette);
+    }
+  if (root.has("structures")) readStructures(root, preset, palette);
+  if (root.has("bolus")) preset.bolus = readMaterial(root.object("bolus"), preset.bolus, palette);
+  if (root.has("bolusByConsistency")) {
+    const std::vector<std::string> known(std::begin(kConsistencies), std::end(kConsistencies));
+    for (const auto& [name, node] : root.object("bolusByConsistency").members()) {
+      if (std::ranges::find(known, name) == known.end())
+        node.fail(fmt::format("unknown consistency \"{}\"", name),
+                  fmt::format("Known: {}.", fmt::join(known, ", ")));
+      const auto start = preset.bolusByConsistency.find(name);
+      preset.bolusByConsistency[name] = readMaterial(
+          node, start == preset.bolusByConsistency.end() ? preset.bolus : start->second, palette);
+    }
+  }
+}
+
+DirectionalLight readLight(const JsonNode& node, DirectionalLight light, const Palette& palette) {
   light.direction = direction(node, "direction", light.direction.cast<double>()).cast<float>();
-  light.colour_srgb = colour(node, "colour", light.colour_srgb);
+  light.colour_srgb = readColour(node, "colour", light.colour_srgb, palette);
   light.intensity = real(node, "intensity", 100, light.intensity);
   return light;
 }
 
-void readLights(const JsonNode& node, LightDef& light) {
-  if (node.has("key")) light.key = readLight(node.object("key"), light.key);
-  if (node.has("fill")) light.fill = readLight(node.object("fill"), light.fill);
-  light.ambientTop_srgb = colour(node, "ambientTop", light.ambientTop_srgb);
-  light.ambientBottom_srgb = colour(node, "ambientBottom", light.ambientBottom_srgb);
+void readLights(const JsonNode& node, LightDef& light, const Palette& palette) {
+  if (node.has("key")) light.key = readLight(node.object("key"), light.key, palette);
+  if (node.has("fill")) light.fill = readLight(node.object("fill"), light.fill, palette);
+  light.ambientTop_srgb = readColour(node, "ambientTop", light.ambientTop_srgb, palette);
+  light.ambientBottom_srgb = readColour(node, "ambientBottom", light.ambientBottom_srgb, palette);
   light.ambientIntensity = real(node, "ambientIntensity", 100, light.ambientIntensity);
   light.shadow = node.boolean("shadow", light.shadow);
   light.shadowMap_px = node.integer("shadowMap_px", 64, 8192, light.shadowMap_px);
@@ -94,22 +104,32 @@ void readLights(const JsonNode& node, LightDef& light) {
   light.shadowStrength = unit(node, "shadowStrength", light.shadowStrength);
 }
 
-void readCaption(const JsonNode& node, CaptionDef& caption) {
+void readCaption(const JsonNode& node, CaptionDef& caption, const Palette& palette) {
   caption.on = node.boolean("on", caption.on);
   caption.font = node.text("font", caption.font);
   caption.size_px = static_cast<float>(node.number("size_px", 4, 400, caption.size_px));
-  caption.colour_srgb = colour(node, "colour", caption.colour_srgb);
+  caption.colour_srgb = readColour(node, "colour", caption.colour_srgb, palette);
   caption.timeBar = node.boolean("timeBar", caption.timeBar);
   caption.credit = node.text("credit", caption.credit);
 }
 
-void readFluoro(const JsonNode& node, FluoroDef& fluoro) {
-  fluoro.softTissue_per_m = real(node, "softTissue_per_m", 1e4, fluoro.softTissue_per_m);
-  fluoro.bodyThickness_m = length_m(node, "bodyThickness_mm", 1000, fluoro.bodyThickness_m);
-  fluoro.exposure = real(node, "exposure", 100, fluoro.exposure);
-  fluoro.noise = unit(node, "noise", fluoro.noise);
-  fluoro.blur_px = real(node, "blur_px", 50, fluoro.blur_px);
-  fluoro.boneDark = node.boolean("boneDark", fluoro.boneDark);
+void readFluoro(const JsonNode& node, FluoroDef& f) {
+  f.body = node.boolean("body", f.body);
+  constexpr double kPerM2 = 1e6;  // from 1/mm2
+  f.quanta_per_m2 =
+      static_cast<float>(node.number("quanta_per_mm2", 0, 1e7, f.quanta_per_m2 / kPerM2) * kPerM2);
+  f.scatterToPrimary = real(node, "scatterToPrimary", 10, f.scatterToPrimary);
+  f.scatterRadius_m = length_m(node, "scatterRadius_mm", 200, f.scatterRadius_m);
+  f.blur_m = length_m(node, "blur_mm", 5, f.blur_m);
+  f.fieldWidth_m = length_m(node, "fieldWidth_mm", 1000, f.fieldWidth_m);
+  f.fieldHeight_m = length_m(node, "fieldHeight_mm", 1000, f.fieldHeight_m);
+  f.fieldCorner_m = length_m(node, "fieldCorner_mm", 500, f.fieldCorner_m);
+  f.penumbra_m = length_m(node, "penumbra_mm", 50, f.penumbra_m);
+  f.white = static_cast<float>(node.number("white", -20, 20, f.white));
+  f.black = static_cast<float>(node.number("black", -20, 20, f.black));
+  f.equalisation = unit(node, "equalisation", f.equalisation);
+  f.gamma = static_cast<float>(node.number("gamma", 0.2, 5, f.gamma));
+  f.boneDark = node.boolean("boneDark", f.boneDark);
 }
 
 ClipRule readCut(const JsonNode& node) {
@@ -136,6 +156,8 @@ ViewDef readView(const JsonNode& node, const std::string& name) {
     view.orthoHeight_m = node.number("orthoHeight_mm", 1, 5000) * kMetrePerMm;
   else
     view.fovY_rad = node.number("fovY_deg", 1, 120) * kRadPerDeg;
+  view.referenceDepth =
+      static_cast<float>(node.number("referenceDepth", 0.1, 20, view.referenceDepth));
   const Vec3 gaze = view.target_m - view.eye_m;
   constexpr double kNearest_m = 1e-3;
   if (node.exists() && (!gaze.allFinite() || gaze.norm() < kNearest_m ||
@@ -145,6 +167,9 @@ ViewDef readView(const JsonNode& node, const std::string& name) {
   if (node.has("cuts"))
     for (const JsonNode& cut : node.array("cuts")) view.cuts.push_back(readCut(cut));
   if (node.has("hidden")) view.hidden = node.texts("hidden");
+  if (node.has("shows"))
+    for (const auto& [structure, pixels] : node.object("shows").members())
+      view.shows[structure] = static_cast<int>(pixels.asNumber(1, 1e7));
   if (node.has("ghosted"))
     for (const auto& [structure, opacity] : node.object("ghosted").members())
       view.ghosted[structure] = static_cast<float>(opacity.asNumber(0, 1));
@@ -167,8 +192,8 @@ void readPicture(const JsonNode& root, RenderPreset& preset) {
         static_cast<float>(root.number("creaseAngle_deg", 0, 180) * kRadPerDeg);
 }
 
-void readSurroundings(const JsonNode& root, RenderPreset& preset) {
-  if (root.has("light")) readLights(root.object("light"), preset.light);
+void readSurroundings(const JsonNode& root, RenderPreset& preset, const Palette& palette) {
+  if (root.has("light")) readLights(root.object("light"), preset.light, palette);
   if (root.has("ao")) {
     const JsonNode ao = root.object("ao");
     preset.ao.strength = unit(ao, "strength", preset.ao.strength);
@@ -177,28 +202,68 @@ void readSurroundings(const JsonNode& root, RenderPreset& preset) {
   }
   if (root.has("background")) {
     const JsonNode background = root.object("background");
-    preset.background.top_srgb = colour(background, "top", preset.background.top_srgb);
-    preset.background.bottom_srgb = colour(background, "bottom", preset.background.bottom_srgb);
+    preset.background.top_srgb = readColour(background, "top", preset.background.top_srgb, palette);
+    preset.background.bottom_srgb =
+        readColour(background, "bottom", preset.background.bottom_srgb, palette);
   }
-  if (root.has("caption")) readCaption(root.object("caption"), preset.caption);
+  if (root.has("caption")) readCaption(root.object("caption"), preset.caption, palette);
   if (root.has("fluoro")) readFluoro(root.object("fluoro"), preset.fluoro);
 }
 
-Result<RenderPreset> readPreset(const JsonFile& file) {
+Result<std::filesystem::path> presetPath(const std::filesystem::path& presetsFolder,
+                                         const std::string& nameOrFile) {
+  if (nameOrFile.ends_with(".json")) return nameOrFile;
+  const std::vector<std::string> names = presetNames(presetsFolder);
+  if (std::ranges::find(names, nameOrFile) != names.end())
+    return presetsFolder / (nameOrFile + ".json");
+  const std::string near = nearestName(nameOrFile, names);
+  return usageError("--preset", fmt::format("unknown preset \"{}\"", nameOrFile),
+                    near.empty()
+                        ? fmt::format("Known: {}; or a .json file.", fmt::join(names, ", "))
+                        : fmt::format("Did you mean \"{}\"?", near));
+}
+
+constexpr int kDeepestBase = 4;
+
+Result<RenderPreset> readPreset(const JsonFile& file, const std::filesystem::path& presetsFolder,
+                                const std::string& paletteOfLook, int depth);
+
+// The preset that this one changes, drawn in the palette of this one.
+Result<RenderPreset> readBase(const JsonNode& root, const std::filesystem::path& presetsFolder,
+                              const std::string& palette, int depth) {
+  if (!root.has("base")) return RenderPreset{};
+  const std::string base = root.text("base");
+  if (depth >= kDeepestBase)
+    return usageError(root.place(), fmt::format("more than {} presets base on each other", depth),
+                      "Look for a circle, or base on one of the first.");
+  auto path = presetPath(presetsFolder, base);
+  if (!path) return std::unexpected(path.error());
+  auto file = JsonFile::load(*path);
+  if (!file) return std::unexpected(file.error());
+  return readPreset(*file, presetsFolder, palette, depth + 1);
+}
+
+Result<RenderPreset> readPreset(const JsonFile& file, const std::filesystem::path& presetsFolder,
+                                const std::string& paletteOfLook, int depth) {
   const JsonNode root = file.root();
-  RenderPreset preset;
+  const std::string own = root.text("palette", "");
+  const std::string paletteName = paletteOfLook.empty() ? own : paletteOfLook;
+  auto base = readBase(root, presetsFolder, paletteName, depth);
+  if (!base) return base;
+  RenderPreset preset = std::move(*base);
+  Palette palette = preset.palette;
+  if (!paletteName.empty()) {
+    auto loaded = loadPalette(presetsFolder, paletteName);
+    if (!loaded) return std::unexpected(loaded.error());
+    palette = preset.palette = std::move(*loaded);
+  }
   readPicture(root, preset);
-  if (root.has("fallback"))
-    preset.fallback = readMaterial(root.object("fallback"), preset.fallback);
-  if (root.has("materials"))
-    for (const auto& [name, node] : root.object("materials").members())
-      preset.materials[name] = readMaterial(node, Material{});
-  if (root.has("structures")) readStructures(root, preset);
-  if (root.has("bolus")) preset.bolus = readMaterial(root.object("bolus"), preset.bolus);
+  readMaterials(root, preset, palette);
   if (root.has("sectionPriority")) preset.sectionPriority = root.texts("sectionPriority");
-  readSurroundings(root, preset);
-  for (const auto& [name, node] : root.object("views").members())
-    preset.views[name] = readView(node, name);
+  readSurroundings(root, preset, palette);
+  if (!root.has("base") || root.has("views"))
+    for (const auto& [name, node] : root.object("views").members())
+      preset.views[name] = readView(node, name);
   if (const std::string problem = preset.validate(); !problem.empty())
     root.fail(problem, "Correct the preset.");
   if (auto done = file.finish(); !done) return std::unexpected(done.error());
@@ -217,24 +282,15 @@ std::vector<std::string> presetNames(const std::filesystem::path& presetsFolder)
 
 Result<RenderPreset> loadPreset(const std::filesystem::path& presetsFolder,
                                 const std::string& nameOrFile) {
-  std::filesystem::path path = nameOrFile;
-  if (!nameOrFile.ends_with(".json")) {
-    const std::vector<std::string> names = presetNames(presetsFolder);
-    if (std::ranges::find(names, nameOrFile) == names.end()) {
-      const std::string near = nearestName(nameOrFile, names);
-      return usageError("--preset", fmt::format("unknown preset \"{}\"", nameOrFile),
-                        near.empty()
-                            ? fmt::format("Known: {}; or a .json file.", fmt::join(names, ", "))
-                            : fmt::format("Did you mean \"{}\"?", near));
-    }
-    path = presetsFolder / (nameOrFile + ".json");
-  }
-  return loadPresetFile(path);
+  const auto path = presetPath(presetsFolder, nameOrFile);
+  if (!path) return std::unexpected(path.error());
+  return loadPresetFile(*path, presetsFolder);
 }
 
-Result<RenderPreset> loadPresetFile(const std::filesystem::path& path) {
+Result<RenderPreset> loadPresetFile(const std::filesystem::path& path,
+                                    const std::filesystem::path& presetsFolder) {
   auto file = JsonFile::load(path);
   if (!file) return std::unexpected(file.error());
-  return readPreset(*file);
+  return readPreset(*file, presetsFolder, "", 0);
 }
 }  // namespace swallowclip::scene

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // render_presets/NAME.json -> render::RenderPreset. Every key is optional but "name" and "views";
-// what is left out keeps the default of render_preset.h. Files carry mm, deg and "#rrggbb".
+// what is left out is as in the preset named by "base", else as in render_preset.h. "palette" names
+// a file of colours (palette_file.h), which a preset may swap under the look of its base. Files
+// carry mm, deg and "#rrggbb".
 #pragma once
 #include <filesystem>
 #include <string>
@@ -15,7 +17,9 @@ namespace swallowclip::scene {
 Result<render::RenderPreset> loadPreset(const std::filesystem::path& presetsFolder,
                                         const std::string& nameOrFile);
 
-Result<render::RenderPreset> loadPresetFile(const std::filesystem::path& path);
+/// `presetsFolder` is where its base and palette are looked for.
+Result<render::RenderPreset> loadPresetFile(const std::filesystem::path& path,
+                                            const std::filesystem::path& presetsFolder);
 
 /// Stems of the *.json files of a folder, sorted. For lists and "did you mean".
 std::vector<std::string> presetNames(const std::filesystem::path& presetsFolder);

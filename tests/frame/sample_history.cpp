@@ -54,6 +54,7 @@ History sampleHistory(int frames, int grid, int particles) {
             .cues_s = {0.1, 1.0 / 3},
             .density_kgm3 = 1000,
             .viscosity_Pas = 1.0,
+            .bariumSulfate_kgm3 = 400,
             .particleSpacing_m = 0.002,
             .meanDensityError = 0.001,
             .maxDensityError = 0.03,

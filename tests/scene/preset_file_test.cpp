@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "scene/file_kind.h"
+#include "scene/palette_file.h"
 
 using namespace swallowclip;
 
@@ -37,8 +38,11 @@ TEST(PresetFile, EveryShippedPresetLoads) {
     const auto preset = scene::loadPreset(kPresets, name);
     ASSERT_TRUE(preset) << preset.error().text();
     EXPECT_EQ(preset->name, name);
-    for (const char* view : {"oblique", "ap", "si"})
-      EXPECT_TRUE(preset->views.contains(view)) << name << " lacks " << view;
+    for (const char* view :
+         {"oblique", "ap", "si", "lateral", "posterior", "axial", "fluoro", "fluoro-ap"}) {
+      ASSERT_TRUE(preset->views.contains(view)) << name << " lacks " << view;
+      EXPECT_FALSE(preset->views.at(view).shows.empty()) << name << " " << view;
+    }
   }
 }
 
@@ -72,6 +76,68 @@ TEST(PresetFile, BadValuesAreNamed) {
             std::string::npos);
 }
 
+TEST(PresetFile, ABaseIsChangedWhereAskedOnly) {
+  const auto training = scene::loadPreset(kPresets, "training");
+  const auto preset = fromText(
+      R"({"name": "t", "base": "training", "height_px": 480, "ao": {"taps": 8},
+         "materials": {"bone": {"roughness": 0.9}}, "views": {"ap": {"projection": "perspective",
+         "eye_mm": [300, 0, 0], "target_mm": [0, 0, -50], "fovY_deg": 20}}})");
+  ASSERT_TRUE(training && preset) << preset.error().text();
+  EXPECT_EQ(preset->height, 480);
+  EXPECT_EQ(preset->width, training->width);
+  EXPECT_EQ(preset->ao.taps, 8);
+  EXPECT_EQ(preset->ao.radius_m, training->ao.radius_m);
+  EXPECT_FLOAT_EQ(preset->materials.at("bone").roughness, 0.9f);
+  EXPECT_EQ(preset->materials.at("bone").baseColour_srgb,
+            training->materials.at("bone").baseColour_srgb);
+  EXPECT_NEAR(preset->views.at("ap").eye_m.x(), 0.3, 1e-12);
+  EXPECT_EQ(preset->views.at("si").eye_m, training->views.at("si").eye_m);
+  const auto wrong = fromText(R"({"name": "t", "base": "trainig"})");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().text().find("Did you mean \"training\"?"), std::string::npos);
+  const auto circle =
+      fromText(R"({"name": "t", "base": ")" + ::testing::TempDir() + R"(preset_file_test.json"})");
+  ASSERT_FALSE(circle);
+  EXPECT_NE(circle.error().text().find("base on each other"), std::string::npos);
+}
+
+TEST(PresetFile, AnotherPaletteRecoloursTheBase) {
+  const std::string path = ::testing::TempDir() + "grey.json";
+  std::string grey = readFile(kPresets / "palettes/clinical.json").value();
+  const auto at = grey.find("\"bone\": \"#");
+  ASSERT_NE(at, std::string::npos);
+  grey.replace(at, 17, "\"bone\": \"#ffffff\"");
+  ASSERT_TRUE(writeFile(path, grey));
+  const auto preset = fromText(R"({"name": "t", "base": "small", "palette": ")" + path + R"("})");
+  ASSERT_TRUE(preset) << preset.error().text();
+  EXPECT_EQ(preset->materials.at("bone").baseColour_srgb, render::Colour(1, 1, 1));
+  std::filesystem::remove(path);
+}
+
+TEST(PresetFile, ColoursAndMaterialsAreFoundByName) {
+  EXPECT_NE(problem(R"(, "palette": "clinical", "background": {"top": "mussle"})")
+                .find("Did you mean \"muscle\"?"),
+            std::string::npos);
+  EXPECT_NE(problem(R"(, "palette": "clinicl")").find("Did you mean \"clinical\"?"),
+            std::string::npos);
+  EXPECT_NE(problem(R"(, "materials": {"cartilege": {}})").find("Did you mean \"cartilage\"?"),
+            std::string::npos);
+  EXPECT_NE(problem(R"(, "bolusByConsistency": {"thik": {}})").find("thin, nectar"),
+            std::string::npos);
+}
+
+TEST(PaletteFile, ColoursThatSomeEyesConfuseAreRefused) {
+  const std::string path = ::testing::TempDir() + "palette_test.json";
+  ASSERT_TRUE(writeFile(path, R"({"palette": {"flesh": "#b47350", "leaf": "#849b4c"},
+                                 "leastDifference": 20, "apart": [["flesh", "leaf"]]})"));
+  const auto refused = scene::loadPalette(kPresets, path);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text().find("\"flesh\" and \"leaf\" differ by"), std::string::npos);
+  EXPECT_NE(refused.error().text().find("eyes"), std::string::npos) << refused.error().text();
+  std::filesystem::remove(path);
+  EXPECT_TRUE(scene::loadPalette(kPresets, "clinical"));
+}
+
 TEST(PresetFile, UnknownPresetGetsTheNearest) {
   const auto preset = scene::loadPreset(kPresets, "trainig");
   ASSERT_FALSE(preset);
@@ -83,8 +149,8 @@ TEST(FileKind, IsToldByTheKeys) {
   using scene::FileKind;
   EXPECT_EQ(scene::fileKind(kPresets / "training.json").value(), FileKind::preset);
   EXPECT_EQ(scene::fileKind(kPresets / "../scenes/boluses.json").value(), FileKind::bolusList);
-  EXPECT_TRUE(scene::checkFile(kPresets / "training.json", FileKind::preset));
-  EXPECT_TRUE(scene::checkFile(kPresets / "../scenes/boluses.json", FileKind::bolusList));
-  EXPECT_FALSE(scene::checkFile(kPresets / "training.json", FileKind::bolus));
+  EXPECT_TRUE(scene::checkFile(kPresets / "training.json", FileKind::preset, kPresets));
+  EXPECT_TRUE(scene::checkFile(kPresets / "../scenes/boluses.json", FileKind::bolusList, kPresets));
+  EXPECT_FALSE(scene::checkFile(kPresets / "training.json", FileKind::bolus, kPresets));
   EXPECT_FALSE(scene::fileKind("/none.json"));
 }
