@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/file.h"
 #include "study/dicom_header.h"
 #include "video/video_reader.h"
 
@@ -48,6 +49,23 @@ Result<Coding> codingOf(const gdcm::TransferSyntax& syntax) {
 
 std::unexpected<Error> damaged(const std::string& what) {
   return refuse(what, "It is cut off or damaged: export it again.");
+}
+
+/// GDCM fills what a cut-off file lacks with zeros. Whether the pixels' end is really there: bytes
+/// of an element of the length that it reports (-1: of fragments, which end with a delimiter).
+bool pixelsAreWhole(const std::string& file, std::int64_t length, bool bigEndian) {
+  using namespace std::string_literals;
+  if (length < 0) return file.rfind("\xfe\xff\xdd\xe0\0\0\0\0"s) != std::string::npos;
+  const std::string tag = bigEndian ? "\x7f\xe0\x00\x10"s : "\xe0\x7f\x10\x00"s;
+  for (std::size_t at = file.find(tag); at != std::string::npos; at = file.find(tag, at + 1))
+    for (const std::size_t head : {8, 12}) {  // implicit, explicit value representation
+      if (at + head > file.size()) continue;
+      std::uint32_t told = 0;
+      std::memcpy(&told, file.data() + at + head - 4, 4);
+      if (bigEndian) told = __builtin_bswap32(told);
+      if (told == length && at + head + told <= file.size()) return true;
+    }
+  return false;
 }
 
 /// One frame's values as the file stores them, made 8-bit RGBA.
@@ -154,6 +172,13 @@ Result<void> DicomDecoder::State::read(const StudyDef& def) {
   info.timing = header.timing;
   info.burnedIn = header.burnedIn;
   info.warnings = header.warnings;
+  auto bytes = readFile(def.path);
+  if (!bytes) return refuse("can't be read", "Check its permissions.");
+  const gdcm::ByteValue* value = pixels().GetByteValue();
+  const auto syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
+  if (!pixelsAreWhole(*bytes, value ? static_cast<std::int64_t>(value->GetLength()) : -1,
+                      syntax == gdcm::TransferSyntax::ExplicitVRBigEndian))
+    return damaged("ends before its pixels do");
   return layOut();
 }
 
