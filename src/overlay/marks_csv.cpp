@@ -141,6 +141,9 @@ Result<Marks> readCsv(const std::string& raw) {
     if (auto read = readRow(table, rows[i], i + 1, marks, ends); !read)
       return std::unexpected(read.error());
   }
+  if (!headed)
+    return refuse(1, "the first row must name the columns kind, name and frame",
+                  "Write kind,name,frame,x_px,y_px above the table.");
   if (ends.size() == 1) return refuse(rows.size(), "one end of a calibration object", "Give both.");
   return marks;
 }

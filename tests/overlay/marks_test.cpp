@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "core/file.h"
 #include "overlay/demo.h"
 #include "scratch.h"
@@ -57,6 +60,20 @@ TEST(Marks, JsonAndTablesAgree) {
   }
 }
 
+TEST(Marks, TheSchemaKnowsTheSameNames) {
+  const auto text =
+      readFile(std::filesystem::path(SWALLOWCLIP_SOURCE_DIR) / "docs/study.events.schema.json");
+  ASSERT_TRUE(text);
+  const nlohmann::json schema = nlohmann::json::parse(*text)["properties"];
+  std::vector<std::string> events;
+  for (const auto& [name, unused] : schema["events"]["properties"].items()) events.push_back(name);
+  std::vector<std::string> known = eventNames();
+  std::ranges::sort(known);
+  EXPECT_EQ(events, known);
+  const nlohmann::json landmarks = schema["landmarks"]["items"]["properties"]["name"]["enum"];
+  EXPECT_EQ(landmarks.get<std::vector<std::string>>(), landmarkNames());
+}
+
 TEST(Marks, WrittenOnesAreReadBack) {
   auto marks = read(kJson);
   ASSERT_TRUE(marks);
@@ -98,7 +115,8 @@ TEST(Marks, MistakesAreNamed) {
   for (const auto& [text, expected] : cases) {
     auto marks = read(text);
     ASSERT_FALSE(marks) << text;
-    EXPECT_NE(marks.error().text().find(expected), std::string::npos) << marks.error().text();
+    EXPECT_NE(marks.error().text().find(expected), std::string::npos)
+        << marks.error().text() << " for " << text;
     EXPECT_EQ(marks.error().text().find("DOE"), std::string::npos) << marks.error().text();
   }
 }
