@@ -13,6 +13,8 @@ namespace swallowclip::overlay {
 namespace {
 constexpr int kColumns = 5, kRows = 6, kThumb_px = 300, kGap_px = 4;  // a sheet is 1520 px wide
 
+constexpr int kStrip_px = 64;  // more than 3.4 caption sizes
+
 constexpr const char* kTemplate = R"({
   "version": 1,
   "comment": "Frames as numbered on the sheets, pixels as in landmarks.png. See docs/overlay.md.",
@@ -51,15 +53,15 @@ Result<int> writeContactSheets(study::Study& study, const study::Protector& prot
     if (cell == 0)
       sheet = Image(kColumns * (kThumb_px + kGap_px),
                     (left + kColumns - 1) / kColumns * (high + kGap_px));
-    Image thumb(kThumb_px, high);
+    Image thumb(kThumb_px, high + kStrip_px);  // the strip takes the clip's time bar, unseen
     lay(
         thumb, {0, 0, kThumb_px, high}, *image,
         [&](const Vec2& p) { return Vec2(p / zoom + Vec2(o.x, o.y)); }, 1 / zoom);
     render::CaptionText words;
-    words.title = std::to_string(k);
-    words.time_s = info.time_s[static_cast<std::size_t>(k)];
+    words.title = fmt::format("{}    {:.3f} s", k, info.time_s[static_cast<std::size_t>(k)]);
     if (auto drawn = render::drawCaptions(thumb, caption, words); !drawn)
       return std::unexpected(drawn.error());
+    thumb.height = high;
     paste(sheet, thumb, cell % kColumns * (kThumb_px + kGap_px),
           cell / kColumns * (high + kGap_px));
     if (cell + 1 == left) {
