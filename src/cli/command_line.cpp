@@ -72,9 +72,34 @@ Result<void> checkNames(const std::vector<std::string>& words) {
   return {};
 }
 
+/// A study with its events, or the demonstration.
+Result<void> checkOverlay(const RunOptions& options) {
+  const pipeline::OverlayOptions& o = options.overlay;
+  if (o.demo) {
+    if (!o.vf.empty() || !o.events.empty())
+      return usageError("--demo", "makes its own study", "Leave out --vf and --events.");
+    return {};
+  }
+  if (o.vf.empty() || o.events.empty())
+    return usageError(o.vf.empty() ? "--vf" : "--events", "no study or no events given",
+                      "Give --vf STUDY --events FILE (`swallowclip events` helps), or --demo.");
+  if (o.out.empty()) return usageError("--out", "no clip named", "Give --out FILE.mp4.");
+  if (o.out.extension() != ".mp4")
+    return usageError("--out", "not an .mp4 file", "Give --out FILE.mp4.");
+  return {};
+}
+
+/// Whether `overlay` needs component and score (or a swallow file).
+bool makesSwallow(const RunOptions& options) {
+  return options.component != 0 || !options.scores.empty() ||
+         (!options.overlay.demo && options.history.empty());
+}
+
 /// What the choices mean together: component and scores, or a swallow file.
 Result<void> checkTogether(unsigned command, RunOptions& options) {
-  if (!(command & (kRender | kSimulate | kSweep))) return {};
+  if (command == kOverlay)
+    if (auto done = checkOverlay(options); !done || !makesSwallow(options)) return done;
+  if (!(command & (kRender | kSimulate | kSweep | kOverlay))) return {};
   if (command == kSweep && !options.range)
     return usageError("--set", "sweep needs a range", "Give track.key=from:to:step.");
   if (command != kSweep && options.range)
@@ -99,10 +124,7 @@ Result<void> checkTogether(unsigned command, RunOptions& options) {
                       fmt::format("component {} has no score {}", c.number, options.scores.back()),
                       fmt::format("Its scores are 0 to {}.", c.highestScore()));
   if (command != kRender && options.scores.size() > 1)
-    return usageError("--score",
-                      fmt::format("{} runs one swallow, so it takes one score",
-                                  command == kSweep ? "sweep" : "simulate"),
-                      "Choose one, or use render.");
+    return usageError("--score", "takes one score here", "Choose one, or use render.");
   if (!options.swallow.empty() && options.scores.size() > 1)
     return usageError("--score", "one swallow file shows one score", "Choose one.");
   return {};

@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "cli/run.h"
+#include "overlay/overlay.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/pipeline.h"
 #include "verify/verify.h"
@@ -23,6 +24,8 @@ int main(int argc, char** argv) {
       {cli::kCheck, pipeline::check},
       {cli::kConfusion, pipeline::confusion},
       {cli::kVerify, verify::verify},
+      {cli::kEvents, overlay::events},
+      {cli::kOverlay, overlay::overlay},
   };
   return cli::run({argv + std::min(argc, 1), argv + argc}, data ? data : SWALLOWCLIP_SOURCE_DIR,
                   handlers);

@@ -11,12 +11,12 @@ namespace {
 namespace fs = std::filesystem;
 using pipeline::RunOptions;
 
-Result<void> checkViews(const RunOptions& options) {
+Result<void> checkViews(const RunOptions& options, const std::vector<std::string>& views) {
   auto preset = scene::loadPreset(options.presetsFolder(), options.preset);
   if (!preset) return std::unexpected(preset.error());
   std::vector<std::string> known;
   for (const auto& [name, view] : preset->views) known.push_back(name);
-  for (const std::string& view : options.views) {
+  for (const std::string& view : views) {
     if (std::ranges::find(known, view) != known.end()) continue;
     const std::string near = nearestName(view, known);
     return usageError("--views", fmt::format("preset {} has no view \"{}\"", preset->name, view),
@@ -70,7 +70,14 @@ Result<void> checkNames(CommandBit command, const RunOptions& options) {
       if (auto found = checkReadable("--swallow", options.swallow, false); !found) return found;
   }
   if (command & (kRender | kDraw))
-    if (auto found = checkViews(options); !found) return found;
+    if (auto found = checkViews(options, options.views); !found) return found;
+  if (command == kOverlay) {
+    if (auto found = checkViews(options, options.overlay.views); !found) return found;
+    if (options.history.empty() || options.overlay.demo || options.overlay.resimulate)
+      if (auto found = checkScene(options); !found) return found;
+    if (!options.history.empty())
+      if (auto found = checkReadable("--history", options.history, false); !found) return found;
+  }
   if (command & (kMeasure | kDraw | kExport))
     if (auto found = checkReadable("history", options.history, false); !found) return found;
   if (command & kImport) {

@@ -185,12 +185,56 @@ Result<void> applyBench(const Words&, RunOptions& options) {
   options.verify.bench = true;
   return {};
 }
+/// Options of `events` and `overlay`: texts, switches, and what has a form of its own.
+template <auto member>
+Result<void> applyOverlay(const Words& words, RunOptions& options) {
+  options.overlay.*member = words[0];
+  return {};
+}
+template <auto member>
+Result<void> applyOverlaySwitch(const Words&, RunOptions& options) {
+  options.overlay.*member = true;
+  return {};
+}
+Result<void> applyLayout(const Words& words, RunOptions& options) {
+  return store(oneOf("--layout", words[0], {"side-by-side", "superimposed", "both"}),
+               options.overlay.layout);
+}
+Result<void> applyStyle(const Words& words, RunOptions& options) {
+  return store(oneOf("--style", words[0], {"outlines", "translucent"}), options.overlay.style);
+}
+Result<void> applyFrameRate(const Words& words, RunOptions& options) {
+  return store(number("--frame-rate", words[0], 0.1, 1000), options.overlay.frameRate_hz);
+}
+Result<void> applyPanes(const Words& words, RunOptions& options) {
+  options.overlay.views = splitAt(words[0], ',');
+  if (options.overlay.views.size() > 4)
+    return usageError("--views", "more than four views", "Give one to four.");
+  return {};
+}
+Result<void> applyMasks(const Words& words, RunOptions& options) {
+  for (const std::string& word : words) {
+    const Words parts = splitAt(word, ',');
+    std::array<int, 4> mask{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto value = integer("--mask", i < parts.size() ? parts[i] : "", 0, 8192);
+      if (!value || parts.size() != 4)
+        return usageError("--mask", "not of the form X,Y,WIDTH,HEIGHT",
+                          "Count pixels of the study from its upper left corner.");
+      mask[i] = *value;
+    }
+    options.overlay.masks.push_back(mask);
+  }
+  return {};
+}
 Result<void> applyFiles(const Words& words, RunOptions& options) {
   options.files.assign(words.begin(), words.end());
   return {};
 }
 
-constexpr unsigned kSwallow = kRender | kSimulate | kSweep, kPictures = kRender | kDraw;
+using pipeline::OverlayOptions;
+constexpr unsigned kSwallow = kRender | kSimulate | kSweep | kOverlay, kPictures = kRender | kDraw,
+                   kStudy = kEvents | kOverlay;
 
 constexpr CommandRow kCommands[] = {
     {kRender, "render", "Simulate a swallow, measure it and film it, one clip per view"},
@@ -206,6 +250,8 @@ constexpr CommandRow kCommands[] = {
     {kConfusion, "confusion",
      "Simulate every built-in score; print intended against measured scores"},
     {kVerify, "verify", "Run the fluid solver on cases with known answers"},
+    {kEvents, "events", "Number the frames of a videofluoroscopy on contact sheets"},
+    {kOverlay, "overlay", "Film the model beside a videofluoroscopy, or on it"},
 };
 
 constexpr OptionRow kOptions[] = {
@@ -228,8 +274,8 @@ constexpr OptionRow kOptions[] = {
      true, applySets},
     {"--compare", "RUN.h5", "History of the unchanged swallow: print what --set changes",
      kRender | kSimulate, 0, false, applyText<&RunOptions::compare>},
-    {"--preset", "NAME|FILE", "Look of the pictures (default training)", kPictures | kCheck, 0,
-     false, applyText<&RunOptions::preset>},
+    {"--preset", "NAME|FILE", "Look of the pictures (default training)",
+     kPictures | kCheck | kOverlay, 0, false, applyText<&RunOptions::preset>},
     {"--spacing-mm", "MM", "Particle spacing, 0.5 to 4 (default 2)", kSwallow, 0, false,
      applySpacing},
     {"--solver", "dfsph|wcsph", "Fluid solver (default dfsph)", kSwallow, 0, false, applySolver},
@@ -241,8 +287,9 @@ constexpr OptionRow kOptions[] = {
     {"--json", "", "Print JSON instead of a table", kMeasure, 0, false, applyJson},
     {"--history", "FILE.h5", "History file to write", kSimulate, kSimulate, false,
      applyText<&RunOptions::history>},
-    {"--out", "DIR", "Folder for results (default output)", kPictures | kExport | kImport | kSweep,
-     kImport, false, applyText<&RunOptions::out>},
+    {"--out", "DIR", "Folder for results (default output)",
+     kPictures | kExport | kImport | kSweep | kEvents, kImport | kEvents, false,
+     applyText<&RunOptions::out>},
     {"--jobs", "N", "Threads to use (default: all processors)",
      kSwallow | kDraw | kVerify | kConfusion, 0, false, applyJobs},
     {"--checkpoint", "FILE",
@@ -267,6 +314,36 @@ constexpr OptionRow kOptions[] = {
      false, applyVerifySpacing},
     {"--out", "DIR", "Folder for verify.json and charts (default output/verify)", kVerify, 0, false,
      applyVerifyOut},
+    {"study", "STUDY", "Video or DICOM file", kEvents, kEvents, false,
+     applyOverlay<&OverlayOptions::vf>},
+    {"--vf", "STUDY", "Videofluoroscopy: video or DICOM file", kOverlay, 0, false,
+     applyOverlay<&OverlayOptions::vf>},
+    {"--events", "FILE", "Its events and landmarks, JSON or CSV", kOverlay, 0, false,
+     applyOverlay<&OverlayOptions::events>},
+    {"--demo", "", "Make the study from simulated fluoroscopy of another swallow", kOverlay, 0,
+     false, applyOverlaySwitch<&OverlayOptions::demo>},
+    {"--history", "RUN.h5", "History of the model (default: simulate component and score)",
+     kOverlay, 0, false, applyText<&RunOptions::history>},
+    {"--layout", "side-by-side|superimposed|both", "Where the model goes (default side-by-side)",
+     kOverlay, 0, false, applyLayout},
+    {"--style", "outlines|translucent", "Look of the model on the X-ray (default outlines)",
+     kOverlay, 0, false, applyStyle},
+    {"--views", "LIST", "One to four views beside the X-ray (default oblique)", kOverlay, 0, false,
+     applyPanes},
+    {"--resimulate", "", "Move the motion and simulate again, instead of warping time", kOverlay, 0,
+     false, applyOverlaySwitch<&OverlayOptions::resimulate>},
+    {"--out", "FILE.mp4", "Clip to write (default with --demo: output/overlay/demo.mp4)", kOverlay,
+     0, false, applyOverlay<&OverlayOptions::out>},
+    {"--dicom", "", "Write the clip as a derived DICOM object too", kOverlay, 0, false,
+     applyOverlaySwitch<&OverlayOptions::dicom>},
+    {"--mask", "X,Y,WIDTH,HEIGHT", "Black out rectangles with patient text, in study pixels",
+     kStudy, 0, true, applyMasks},
+    {"--no-burned-in-text", "", "Vouch that no patient text is burned into the pixels", kStudy, 0,
+     false, applyOverlaySwitch<&OverlayOptions::noBurnedInText>},
+    {"--keep-border", "", "Do not black out what lies outside the X-ray's opening", kStudy, 0,
+     false, applyOverlaySwitch<&OverlayOptions::keepBorder>},
+    {"--frame-rate", "HZ", "Rate of a study that holds no frame times", kStudy, 0, false,
+     applyFrameRate},
 };
 }  // namespace
 

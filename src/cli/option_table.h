@@ -21,6 +21,8 @@ enum CommandBit : unsigned {
   kList = 64,
   kCheck = 128,
   kVerify = 256,
+  kEvents = 512,
+  kOverlay = 1024,
   kSweep = 4096,
   kConfusion = 8192,
 };

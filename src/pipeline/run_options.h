@@ -2,6 +2,7 @@
 // What a person asked for, checked for form by the cli room. Every field has the default of an
 // option left out; which fields matter depends on the command (src/cli/option_table.cpp).
 #pragma once
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,6 +33,20 @@ struct VerifyOptions {
   std::filesystem::path out = "output/verify";
 };
 
+/// `events` and `overlay`: a study beside the model.
+struct OverlayOptions {
+  std::filesystem::path vf;      ///< video or DICOM
+  std::filesystem::path events;  ///< marked events and landmarks, JSON or CSV
+  std::filesystem::path out;     ///< clip to write; empty: output/overlay/demo.mp4
+  std::vector<std::string> views{"oblique"};
+  std::string layout = "side-by-side";    ///< side-by-side, superimposed, both
+  std::string style = "outlines";         ///< outlines, translucent
+  std::vector<std::array<int, 4>> masks;  ///< x, y, width, height in pixels of the study
+  double frameRate_hz = 0;                ///< 0: from the file
+  bool demo = false, resimulate = false, dicom = false;
+  bool noBurnedInText = false, keepBorder = false;
+};
+
 struct RunOptions {
   int component = 0;                   ///< 1..17; 0: none, the swallow file stands alone
   std::vector<int> scores;             ///< intended scores, ascending; empty: none
@@ -59,6 +74,7 @@ struct RunOptions {
   std::string topic;                 ///< list: components, scores, views, presets, boluses, scenes
   std::vector<std::filesystem::path> files;  ///< check, verify
   VerifyOptions verify;
+  OverlayOptions overlay;
 
   /// Folder that holds scenes/, render_presets/ and shaders/.
   std::filesystem::path data;

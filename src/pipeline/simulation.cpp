@@ -199,6 +199,12 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
   std::filesystem::path swallowFile;
   auto swallow = loadSwallow(o, score, &swallowFile);
   if (!swallow) return std::unexpected(swallow.error());
+  return simulateSwallow(o, *swallow, swallowFile, fps, progress);
+}
+
+Result<frame::History> simulateSwallow(const RunOptions& o, const kinematics::SwallowDef& swallow,
+                                       const std::filesystem::path& swallowFile, double fps,
+                                       Progress& progress) {
   auto scene = loadScene(o);
   if (!scene) return std::unexpected(scene.error());
   for (const std::string& n : scene->notes) progress.note(n);
@@ -207,16 +213,16 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
   frame::History h;
   frame::Meta& m = h.meta;
   m.scene = o.scene;
-  m.swallow = swallow->name;
+  m.swallow = swallow.name;
   for (const TrackSetting& set : o.sets)
     m.swallow += fmt::format("+{}.{}={:g}", set.track, set.key, set.value);
   m.bolus = "none";
   m.solver = o.hasBolus() ? o.solver : "none";
   m.program = std::string("swallowclip ") + SWALLOWCLIP_VERSION;
-  m.component = swallow->component;
-  m.score = swallow->score;
+  m.component = swallow.component;
+  m.score = swallow.score;
   m.fps = fps;
-  m.cues_s = swallow->cues_s;
+  m.cues_s = swallow.cues_s;
   m.particleSpacing_m = o.spacing_mm * kMetrePerMm;
   bolus::Fluid fluid;
   if (o.hasBolus()) {
@@ -234,10 +240,10 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
   if (!hash) return std::unexpected(hash.error());
   m.inputsSha256 = *hash;
 
-  auto moving = setInMotion(*scene, *swallow, o.jobs);
+  auto moving = setInMotion(*scene, swallow, o.jobs);
   if (!moving) return std::unexpected(moving.error());
   bolus::WallMotion walls = moving->skin.wallMotion();
-  const kinematics::Choreography choreography(*scene->lumen, *swallow);
+  const kinematics::Choreography choreography(*scene->lumen, swallow);
   walls.sealed = [&choreography](double t, int branch) { return choreography.sealed(t, branch); };
   std::optional<bolus::Solver> solver;
   if (o.hasBolus()) {
@@ -252,7 +258,7 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
   h.skin.s_m.assign(walls.s_m.begin(), walls.s_m.end());
   h.skin.u.assign(walls.u.begin(), walls.u.end());
   for (const std::string& name : moving->landmarkNames) h.landmarks.push_back({name, {}});
-  for (const auto& [name, time] : kinematics::plannedEvents(*swallow))
+  for (const auto& [name, time] : kinematics::plannedEvents(swallow))
     h.plannedEvents.push_back({name, time});
 
   std::error_code ec;
@@ -263,7 +269,7 @@ Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fp
     progress.note(
         fmt::format("going on from {} at frame {}", o.checkpoint.string(), h.ledger.size()));
   }
-  const int frames = static_cast<int>(std::floor(swallow->duration_s * fps + 1e-9)) + 1;
+  const int frames = static_cast<int>(std::floor(swallow.duration_s * fps + 1e-9)) + 1;
   std::vector<Vec3> p, v;
   for (int k = 0; k < frames; ++k) {
     if (interrupted()) return std::unexpected(interruptedError());

@@ -17,4 +17,10 @@ Result<kinematics::SwallowDef> loadSwallow(const RunOptions& options, int score,
 /// Frames at `fps` from the cue (time 0) to the end of the swallow.
 Result<frame::History> simulateSwallow(const RunOptions& options, int score, double fps,
                                        Progress& progress);
+
+/// The same for a swallow that is known already; `swallowFile` counts for the inputs' hash.
+Result<frame::History> simulateSwallow(const RunOptions& options,
+                                       const kinematics::SwallowDef& swallow,
+                                       const std::filesystem::path& swallowFile, double fps,
+                                       Progress& progress);
 }  // namespace swallowclip::pipeline

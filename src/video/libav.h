@@ -3,7 +3,11 @@
 #pragma once
 extern "C" {
 #include <libavcodec/avcodec.h>
+#include <libavfilter/avfilter.h>
+#include <libavfilter/buffersink.h>
+#include <libavfilter/buffersrc.h>
 #include <libavformat/avformat.h>
+#include <libavutil/display.h>
 #include <libavutil/imgutils.h>
 #include <libavutil/opt.h>
 #include <libswscale/swscale.h>
@@ -25,6 +29,7 @@ struct LibavDelete {
   void operator()(AVFrame* f) const { av_frame_free(&f); }
   void operator()(AVPacket* p) const { av_packet_free(&p); }
   void operator()(SwsContext* s) const { sws_freeContext(s); }
+  void operator()(AVFilterGraph* g) const { avfilter_graph_free(&g); }
 };
 template <class T>
 using Owned = std::unique_ptr<T, LibavDelete>;
