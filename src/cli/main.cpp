@@ -2,6 +2,8 @@
 #include <cstdlib>
 
 #include "cli/run.h"
+#include "library/nightly.h"
+#include "library/perform.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/pipeline.h"
 #include "verify/verify.h"
@@ -21,6 +23,8 @@ int main(int argc, char** argv) {
       {cli::kList, pipeline::list},
       {cli::kCheck, pipeline::check},
       {cli::kVerify, verify::verify},
+      {cli::kNightly, library::nightly},
+      {cli::kJob, library::job},
   };
   return cli::run({argv + std::min(argc, 1), argv + argc}, data ? data : SWALLOWCLIP_SOURCE_DIR,
                   handlers);

@@ -158,6 +158,29 @@ Result<void> applyBench(const Words&, RunOptions& options) {
   options.verify.bench = true;
   return {};
 }
+Result<void> applyLibraryOut(const Words& words, RunOptions& options) {
+  options.library.out = words[0];
+  return {};
+}
+Result<void> applySpec(const Words& words, RunOptions& options) {
+  options.library.spec = words[0];
+  return {};
+}
+Result<void> applyEngine(const Words& words, RunOptions& options) {
+  return store(oneOf("--engine", words[0], {"local", "slurm"}), options.library.engine);
+}
+Result<void> applyPlan(const Words&, RunOptions& options) {
+  options.library.plan = true;
+  return {};
+}
+Result<void> applyPublish(const Words&, RunOptions& options) {
+  options.library.publish = true;
+  return {};
+}
+Result<void> applyKey(const Words& words, RunOptions& options) {
+  options.library.key = words[0];
+  return {};
+}
 Result<void> applyFiles(const Words& words, RunOptions& options) {
   options.files.assign(words.begin(), words.end());
   return {};
@@ -175,6 +198,9 @@ constexpr CommandRow kCommands[] = {
     {kList, "list", "Show what can be chosen"},
     {kCheck, "check", "Check scene, swallow, bolus and preset files"},
     {kVerify, "verify", "Run the fluid solver on cases with known answers"},
+    {kNightly, "nightly",
+     "Bring the whole clip library up to date and publish it when it is whole"},
+    {kJob, "job", "Make one product of the nightly plan, unless it is there already"},
 };
 
 constexpr OptionRow kOptions[] = {
@@ -204,8 +230,8 @@ constexpr OptionRow kOptions[] = {
      applyText<&RunOptions::history>},
     {"--out", "DIR", "Folder for results (default output)", kPictures | kExport | kImport, kImport,
      false, applyText<&RunOptions::out>},
-    {"--jobs", "N", "Threads to use (default: all processors)", kSwallow | kDraw | kVerify, 0,
-     false, applyJobs},
+    {"--jobs", "N", "Threads to use (default: all processors)",
+     kSwallow | kDraw | kVerify | kNightly, 0, false, applyJobs},
     {"--checkpoint", "FILE",
      "Keep the state of the run in FILE, and go on from it when a run was interrupted", kSimulate,
      0, false, applyText<&RunOptions::checkpoint>},
@@ -228,6 +254,17 @@ constexpr OptionRow kOptions[] = {
      false, applyVerifySpacing},
     {"--out", "DIR", "Folder for verify.json and charts (default output/verify)", kVerify, 0, false,
      applyVerifyOut},
+    {"--spec", "FILE", "What the library is to hold (default scenes/nightly.json)", kNightly, 0,
+     false, applySpec},
+    {"--engine", "local|slurm", "Ninja on this machine, or a Slurm cluster (default local)",
+     kNightly, 0, false, applyEngine},
+    {"--plan", "", "Print the job graph, what is stale and why, and stop", kNightly, 0, false,
+     applyPlan},
+    {"--publish", "", "Run no job: check and publish what is there", kNightly, 0, false,
+     applyPublish},
+    {"--out", "DIR", "Folder of the library (default output/library)", kNightly | kJob, 0, false,
+     applyLibraryOut},
+    {"key", "KEY", "Key of the product, from nightly --plan", kJob, kJob, false, applyKey},
 };
 }  // namespace
 

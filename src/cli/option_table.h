@@ -21,6 +21,8 @@ enum CommandBit : unsigned {
   kList = 64,
   kCheck = 128,
   kVerify = 256,
+  kNightly = 512,
+  kJob = 1024,
 };
 
 struct CommandRow {

@@ -23,6 +23,16 @@ struct VerifyOptions {
   std::filesystem::path out = "output/verify";
 };
 
+/// `nightly` and `job`.
+struct LibraryOptions {
+  std::filesystem::path spec;    ///< empty: scenes/nightly.json
+  std::string engine = "local";  ///< or slurm
+  bool plan = false;             ///< show what would be done
+  bool publish = false;          ///< run no job, publish what is there
+  std::string key;               ///< job
+  std::filesystem::path out = "output/library";
+};
+
 struct RunOptions {
   int component = 0;                   ///< 1..17; 0: none, the swallow file stands alone
   std::vector<int> scores;             ///< intended scores, ascending; empty: none
@@ -46,6 +56,7 @@ struct RunOptions {
   std::string topic;                 ///< list: components, scores, views, presets, boluses, scenes
   std::vector<std::filesystem::path> files;  ///< check, verify
   VerifyOptions verify;
+  LibraryOptions library;
 
   /// Folder that holds scenes/, render_presets/ and shaders/.
   std::filesystem::path data;
