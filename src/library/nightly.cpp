@@ -61,8 +61,10 @@ struct Evening {
     if (!made) return std::unexpected(made.error());
     plan = std::move(*made);
     Store store(root, stamps);
-    if (repair)
-      store.prune(wanted(), spec.publish.keep_gb);  // a full disk may be full of leftovers
+    if (repair) {  // a full disk may be full of leftovers
+      pruneNights(root, spec.publish);
+      store.prune(wanted(), spec.publish.keep_gb);
+    }
     lookUp(plan, store, memory, repair);
     return {};
   }
@@ -101,7 +103,7 @@ Result<void> Evening::finish(const Tonight& tonight, double wall_s) {
   s.run = static_cast<int>(tonight.jobs.size());
   s.failed = plan.staleCount();
   s.wall_s = wall_s;
-  s.processors = options.jobs;
+  s.processors = options.library.publish ? 0 : options.jobs;
   for (const PlannedJob& p : plan.jobs)
     if (p.marker &&
         std::ranges::any_of(tonight.jobs, [&](const auto& j) { return j.first == p.job.key; }))
@@ -200,7 +202,8 @@ Result<void> nightly(const pipeline::RunOptions& options, pipeline::Progress& pr
   }
   if (asked.publish) {
     const Tonight tonight = loadTonight(*root);
-    return evening.finish(tonight, std::max(0.0, now_s() - tonight.started_s));
+    return evening.finish(tonight,
+                          tonight.started_s > 0 ? std::max(0.0, now_s() - tonight.started_s) : 0);
   }
   Tonight tonight;
   tonight.started_s = now_s();

@@ -60,7 +60,7 @@ Result<void> runNinja(const Plan& plan, const Root& root, int jobs, pipeline::Pr
     all_s += plan.jobs[k].cost_s;
   }
   int failures = 0, ended = 0;
-  progress.stage(fmt::format("0 of {} jobs", costs.size()));
+  progress.stage(fmt::format("{} jobs", costs.size()));
   // A line "[3/60] NAME" comes when a job has ended, well or not.
   const auto line = [&](const std::string& text) {
     failures += text.starts_with("FAILED: ");

@@ -170,6 +170,8 @@ int pruneNights(const Root& root, const PublishDef& limits) {
     if (const auto name = entry.path().filename().string();
         name.starts_with(".n") && name.ends_with(".part"))
       fs::remove_all(entry.path(), ec);
+  for (const auto& entry : fs::directory_iterator(root.path, ec))
+    if (entry.path().filename().string().starts_with(".current.")) fs::remove(entry.path(), ec);
   const std::string current = currentName(root);
   std::set<ino_t> seen;
   double bytes = 0;

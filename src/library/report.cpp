@@ -84,11 +84,12 @@ class Page {
     return fmt::format(
         "<h1>Clip library, night of {} UTC</h1>\n<div class=\"verdict{}\"><strong>{}</strong> {}"
         "<br>Shown: {} with {} clips{}. {} of {} jobs were run, {} failed, {} of {} clips missing."
-        "<br>{:.0f} s on {} processors, {:.0f} s of processor time{}.</div>\n",
+        "<br>{:.0f} s{}, {:.0f} s of processor time{}.</div>\n",
         html(s.when), s.outcome == Outcome::kept ? "" : " good", verdict, html(s.problem),
         s.night.empty() ? "nothing" : html(s.night), s.clips,
         r_.shown && r_.shown->draft ? " (a draft: labels were not asked for)" : "", s.run, s.jobs,
-        s.failed, s.missing, r_.plan.clips.size(), s.wall_s, s.processors, s.cpuSum_s(),
+        s.failed, s.missing, r_.plan.clips.size(), s.wall_s,
+        s.processors > 0 ? fmt::format(" on {} processors", s.processors) : "", s.cpuSum_s(),
         efficiency ? fmt::format(", {:.0f} % of what they had", 100 * *efficiency) : "");
   }
 

@@ -93,6 +93,11 @@ int Store::prune(const std::vector<std::string>& wanted, double most_gb) {
   for (const char* kind : {"jobs", "logs", "checkpoints"})
     for (const auto& entry : fs::directory_iterator(root_.run() / kind, ec))
       if (!keep.contains(entry.path().stem().string())) fs::remove(entry.path(), ec);
+  for (const fs::path& folder : {root_.run(), root_.report()})  // cut off between write and rename
+    for (const auto& entry : fs::directory_iterator(folder, ec))
+      if (const auto name = entry.path().filename().string();
+          name.starts_with('.') && name.find(".part") != std::string::npos)
+        fs::remove(entry.path(), ec);
   for (const auto& shelf : fs::directory_iterator(root_.store(), ec)) {
     if (!shelf.is_directory(ec) || shelf.is_symlink(ec)) continue;
     for (const auto& product : fs::directory_iterator(shelf.path(), ec)) {

@@ -54,7 +54,7 @@ double Summary::cpuSum_s() const {
 }
 
 std::optional<double> Summary::efficiency() const {
-  if (run == failed || wall_s <= 0) return std::nullopt;
+  if (run == failed || wall_s <= 0 || processors < 1) return std::nullopt;
   return cpuSum_s() / (processors * wall_s);
 }
 

@@ -32,7 +32,7 @@ struct Summary {
   int missing = 0;                      ///< of the plan's clips, left out or in the way
   int jobs = 0, run = 0, failed = 0;    ///< in the plan; stale at the start; still stale
   double wall_s = 0;                    ///< of the engine
-  int processors = 1;                   ///< that the engine was given
+  int processors = 0;                   ///< that the engine was given; 0: not known
   double overhead_s = 0;                ///< processor time that went into no product
   std::map<std::string, double> cpu_s;  ///< of this night's products, by stage
   std::string problem;                  ///< why it was kept
