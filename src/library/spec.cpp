@@ -191,7 +191,7 @@ Result<SpecDef> loadSpec(const fs::path& path, const pipeline::RunOptions& given
   const std::vector<Error> problems = file->problems();
   if (problems.empty()) return spec;
   std::string text = fmt::format("{} problem{}", problems.size(), problems.size() > 1 ? "s" : "");
-  for (const Error& e : problems) text += "\n" + e.text();
+  for (const Error& e : problems) text += fmt::format("\n{}", e.text());
   return usageError(path.string(), text, "");
 }
 }  // namespace swallowclip::library
