@@ -27,11 +27,12 @@ Result<void> writeJobFiles(const Plan& plan, const Root& root) {
 }
 
 // `exec` and setpriv: the job is Ninja's own child and dies with it, so that nothing of a killed
-// night goes on in the dark.
+// night goes on in the dark. Descriptor 3 keeps Ninja's pipe open: once a job's pipe is closed Ninja
+// does nothing but wait for that job, starts no other and hears no signal.
 std::string ninjaText(const Plan& plan, const Root& root, const std::string& program) {
   std::string text = fmt::format(
       "ninja_required_version = 1.8\nbuilddir = {}\n\nrule job\n"
-      "  command = exec setpriv --pdeathsig KILL {} job $out --out {} >{}/$out.log 2>&1\n"
+      "  command = exec setpriv --pdeathsig KILL {} job $out --out {} 3>&1 >{}/$out.log 2>&1\n"
       "  description = $job\n\n",
       ninjaQuoted(root.run().string()), ninjaQuoted(shellQuoted(program)),
       ninjaQuoted(shellQuoted(root.path.string())),

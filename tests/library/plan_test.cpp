@@ -5,6 +5,7 @@
 
 #include "data.h"
 #include "library/engine.h"
+#include "library/process.h"
 
 namespace swallowclip::library {
 namespace {
@@ -126,6 +127,29 @@ TEST_F(PlanTest, TheOrderPutsLongWaysFirstAndNeverAJobBeforeItsNeeds) {
       done.insert(key);
     }
   }
+}
+
+TEST_F(PlanTest, ALongJobHoldsUpNoOther) {
+  Plan p = plan(test::kSpec);
+  const auto root = openRoot(options.library.out, true);
+  ASSERT_TRUE(root);
+  std::string slow, waiting;  // one bake, and a job that needs only the other one
+  for (const PlannedJob& j : p.jobs) {
+    if (j.job.name == "bake c04-s0") slow = j.job.key;
+    if (j.job.name == "simulate c04-s1-thin") waiting = j.job.key;
+  }
+  const fs::path list = folder / "list";
+  const fs::path fake = write("fake", fmt::format("#!/bin/sh\necho start $2 >>'{0}'\n"
+                                                  "[ $2 != {1} ] || sleep 3\n"
+                                                  "echo end $2 >>'{0}'\n",
+                                                  list.string(), slow));
+  fs::permissions(fake, fs::perms::owner_all);
+  const fs::path file = write("build.ninja", ninjaText(p, *root, fake.string()));
+  const auto code = runChild({"ninja", "-f", file.string(), "-k", "0", "-j", "2"}, [](auto&) {});
+  ASSERT_TRUE(code) << code.error().text();
+  EXPECT_EQ(*code, 0);
+  const std::string order = readFile(list).value();
+  EXPECT_LT(order.find("start " + waiting), order.find("end " + slow)) << order;
 }
 
 TEST_F(PlanTest, TheMemoryTellsWhichInputHasChanged) {
