@@ -84,7 +84,7 @@ same "$library" "$folder/reference" || fail 'after the poison: not the bytes of 
 
 # 4. A full disk, where a small file system can be mounted.
 mkdir "$folder/disk"
-if mount -t tmpfs -o size=9m tmpfs "$folder/disk" 2>/dev/null; then
+if mount -t tmpfs -o size=6m tmpfs "$folder/disk" 2>/dev/null; then
   trap 'umount "$folder/disk"; tidy' EXIT
   night "$folder/disk/library" && fail 'a night on a full disk succeeded'
   [ ! -e "$folder/disk/library/current" ] || fail 'a night on a full disk was shown'
