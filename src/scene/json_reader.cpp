@@ -98,8 +98,9 @@ Result<void> JsonFile::finish() const {
 }
 
 std::vector<Error> JsonFile::problems() const {
+  const std::vector<Error> read = document_->errors;
   findUnknownKeys(*document_);
-  return std::exchange(document_->errors, {});
+  return std::exchange(document_->errors, read);
 }
 
 std::string JsonNode::place() const {
