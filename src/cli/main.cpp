@@ -2,6 +2,8 @@
 #include <cstdlib>
 
 #include "cli/run.h"
+#include "library/nightly.h"
+#include "library/perform.h"
 #include "overlay/overlay.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/pipeline.h"
@@ -26,6 +28,8 @@ int main(int argc, char** argv) {
       {cli::kVerify, verify::verify},
       {cli::kEvents, overlay::events},
       {cli::kOverlay, overlay::overlay},
+      {cli::kNightly, library::nightly},
+      {cli::kJob, library::job},
   };
   return cli::run({argv + std::min(argc, 1), argv + argc}, data ? data : SWALLOWCLIP_SOURCE_DIR,
                   handlers);

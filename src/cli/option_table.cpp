@@ -2,59 +2,14 @@
 #include "cli/option_table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "cli/option_words.h"
 #include "pipeline/components.h"
 
 namespace swallowclip::cli {
 namespace {
 using pipeline::RunOptions;
-using Words = std::vector<std::string>;
-
-Result<double> number(const char* place, const std::string& word, double min, double max) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  const bool whole = error == std::errc{} && end == word.data() + word.size();
-  if (whole && value >= min && value <= max) return value;
-  return usageError(place, fmt::format("\"{}\" is not a number from {} to {}", word, min, max),
-                    "Correct the value.");
-}
-
-Result<int> integer(const char* place, const std::string& word, int min, int max) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error == std::errc{} && end == word.data() + word.size() && value >= min && value <= max)
-    return value;
-  return usageError(place,
-                    fmt::format("\"{}\" is not a whole number from {} to {}", word, min, max),
-                    "Correct the value.");
-}
-
-Result<std::string> oneOf(const char* place, const std::string& word, const Words& known) {
-  if (std::ranges::find(known, word) != known.end()) return word;
-  const std::string near = nearestName(word, known);
-  return usageError(place, fmt::format("unknown word \"{}\"", word),
-                    near.empty() ? fmt::format("Known: {}.", fmt::join(known, ", "))
-                                 : fmt::format("Did you mean \"{}\"?", near));
-}
-
-/// Stores a successful result, passes on the error of another.
-template <class T, class U>
-Result<void> store(Result<T> result, U& into) {
-  if (!result) return std::unexpected(result.error());
-  into = static_cast<U>(std::move(*result));
-  return {};
-}
-
-Words splitAt(const std::string& text, char separator) {
-  Words parts;
-  std::size_t start = 0;
-  for (std::size_t at; (at = text.find(separator, start)) != std::string::npos; start = at + 1)
-    parts.push_back(text.substr(start, at - start));
-  parts.push_back(text.substr(start));
-  return parts;
-}
 
 Result<void> applyComponent(const Words& words, RunOptions& options) {
   Words known;
@@ -227,6 +182,29 @@ Result<void> applyMasks(const Words& words, RunOptions& options) {
   }
   return {};
 }
+Result<void> applyLibraryOut(const Words& words, RunOptions& options) {
+  options.library.out = words[0];
+  return {};
+}
+Result<void> applySpec(const Words& words, RunOptions& options) {
+  options.library.spec = words[0];
+  return {};
+}
+Result<void> applyEngine(const Words& words, RunOptions& options) {
+  return store(oneOf("--engine", words[0], {"local", "slurm"}), options.library.engine);
+}
+Result<void> applyPlan(const Words&, RunOptions& options) {
+  options.library.plan = true;
+  return {};
+}
+Result<void> applyPublish(const Words&, RunOptions& options) {
+  options.library.publish = true;
+  return {};
+}
+Result<void> applyKey(const Words& words, RunOptions& options) {
+  options.library.key = words[0];
+  return {};
+}
 Result<void> applyFiles(const Words& words, RunOptions& options) {
   options.files.assign(words.begin(), words.end());
   return {};
@@ -252,6 +230,9 @@ constexpr CommandRow kCommands[] = {
     {kVerify, "verify", "Run the fluid solver on cases with known answers"},
     {kEvents, "events", "Number the frames of a videofluoroscopy on contact sheets"},
     {kOverlay, "overlay", "Film the model beside a videofluoroscopy, or on it"},
+    {kNightly, "nightly",
+     "Bring the whole clip library up to date and publish it when it is whole"},
+    {kJob, "job", "Make one product of the nightly plan, unless it is there already"},
 };
 
 constexpr OptionRow kOptions[] = {
@@ -291,7 +272,7 @@ constexpr OptionRow kOptions[] = {
      kPictures | kExport | kImport | kSweep | kEvents, kImport | kEvents, false,
      applyText<&RunOptions::out>},
     {"--jobs", "N", "Threads to use (default: all processors)",
-     kSwallow | kDraw | kVerify | kConfusion, 0, false, applyJobs},
+     kSwallow | kDraw | kVerify | kConfusion | kNightly, 0, false, applyJobs},
     {"--checkpoint", "FILE",
      "Keep the state of the run in FILE, and go on from it when a run was interrupted", kSimulate,
      0, false, applyText<&RunOptions::checkpoint>},
@@ -344,6 +325,17 @@ constexpr OptionRow kOptions[] = {
      false, applyOverlaySwitch<&OverlayOptions::keepBorder>},
     {"--frame-rate", "HZ", "Rate of a study that holds no frame times", kStudy, 0, false,
      applyFrameRate},
+    {"--spec", "FILE", "What the library is to hold (default scenes/nightly.json)", kNightly, 0,
+     false, applySpec},
+    {"--engine", "local|slurm", "Ninja on this machine, or a Slurm cluster (default local)",
+     kNightly, 0, false, applyEngine},
+    {"--plan", "", "Print the job graph, what is stale and why, and stop", kNightly, 0, false,
+     applyPlan},
+    {"--publish", "", "Run no job: check and publish what is there", kNightly, 0, false,
+     applyPublish},
+    {"--out", "DIR", "Folder of the library (default output/library)", kNightly | kJob, 0, false,
+     applyLibraryOut},
+    {"key", "KEY", "Key of the product, from nightly --plan", kJob, kJob, false, applyKey},
 };
 }  // namespace
 

@@ -25,6 +25,8 @@ enum CommandBit : unsigned {
   kOverlay = 1024,
   kSweep = 4096,
   kConfusion = 8192,
+  kNightly = 16384,
+  kJob = 32768,
 };
 
 struct CommandRow {

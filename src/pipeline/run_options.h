@@ -47,6 +47,16 @@ struct OverlayOptions {
   bool noBurnedInText = false, keepBorder = false;
 };
 
+/// `nightly` and `job`.
+struct LibraryOptions {
+  std::filesystem::path spec;    ///< empty: scenes/nightly.json
+  std::string engine = "local";  ///< or slurm
+  bool plan = false;             ///< show what would be done
+  bool publish = false;          ///< run no job, publish what is there
+  std::string key;               ///< job
+  std::filesystem::path out = "output/library";
+};
+
 struct RunOptions {
   int component = 0;                   ///< 1..17; 0: none, the swallow file stands alone
   std::vector<int> scores;             ///< intended scores, ascending; empty: none
@@ -75,6 +85,7 @@ struct RunOptions {
   std::vector<std::filesystem::path> files;  ///< check, verify
   VerifyOptions verify;
   OverlayOptions overlay;
+  LibraryOptions library;
 
   /// Folder that holds scenes/, render_presets/ and shaders/.
   std::filesystem::path data;

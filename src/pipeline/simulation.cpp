@@ -7,12 +7,12 @@
 #include "biomech/model.h"
 #include "bolus/solver.h"
 #include "core/digest.h"
-#include "core/file.h"
 #include "kinematics/choreography.h"
 #include "kinematics/events.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/interrupt.h"
 #include "scene/bolus_file.h"
+#include "scene/json_text.h"
 #include "scene/swallow_file.h"
 
 namespace swallowclip::pipeline {
@@ -94,11 +94,12 @@ void appendStructures(const biomech::ModelState& state, frame::History& h) {
   }
 }
 
+/// By meaning: neither remarks nor other boluses of the list count.
 Result<std::string> inputsHash(const RunOptions& o,
                                const std::vector<std::filesystem::path>& files) {
   std::string all = std::string(SWALLOWCLIP_VERSION) + "\n";
   for (const auto& f : files) {
-    auto text = readFile(f);
+    auto text = scene::canonicalJson(f, "boluses", o.bolus);
     if (!text) return std::unexpected(text.error());
     all += sha256Hex(*text) + " " + f.filename().string() + "\n";
   }
@@ -208,7 +209,9 @@ Result<frame::History> simulateSwallow(const RunOptions& o, const kinematics::Sw
   auto scene = loadScene(o);
   if (!scene) return std::unexpected(scene.error());
   for (const std::string& n : scene->notes) progress.note(n);
-  scene->files.push_back(swallowFile);
+  auto swallowFiles = scene::swallowFiles(swallowFile);
+  if (!swallowFiles) return std::unexpected(swallowFiles.error());
+  scene->files.insert(scene->files.end(), swallowFiles->begin(), swallowFiles->end());
 
   frame::History h;
   frame::Meta& m = h.meta;

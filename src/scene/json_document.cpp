@@ -12,6 +12,7 @@ constexpr std::size_t kMaxBytes = 64u << 20;   // 64 MB: our largest scene file 
 constexpr std::size_t kMaxValues = 1'000'000;  // ours have below 5000; about 250 MB at worst
 constexpr std::size_t kMaxDepth = 64;          // levels; ours need 6
 constexpr std::size_t kExcerpt = 100;          // columns shown of the offending line
+constexpr std::size_t kMostErrors = 50;        // more than anybody reads at once
 
 /// Receives the library's events in file order and finds each token's position by walking the text
 /// beside it: between two tokens stand only white space, ',' and ':'.
@@ -190,9 +191,9 @@ std::string JsonDocument::excerpt(std::size_t offset) const {
 }
 
 void JsonDocument::fail(std::size_t offset, std::string problem, std::string remedy) {
-  if (firstError) return;
-  firstError = Error{ErrorKind::usage, place(offset), std::move(problem) + excerpt(offset),
-                     std::move(remedy)};
+  if (errors.size() < kMostErrors)
+    errors.push_back(
+        {ErrorKind::usage, place(offset), std::move(problem) + excerpt(offset), std::move(remedy)});
 }
 
 Result<std::shared_ptr<JsonDocument>> parseJson(std::string text, std::string name) {
@@ -206,7 +207,7 @@ Result<std::shared_ptr<JsonDocument>> parseJson(std::string text, std::string na
   document->text = std::move(text);
   TreeBuilder builder(*document);
   const bool whole = nlohmann::json::sax_parse(document->text, &builder);
-  if (document->firstError) return std::unexpected(*document->firstError);
+  if (!document->errors.empty()) return std::unexpected(document->errors.front());
   if (!whole || document->values.empty())
     return usageError(document->name, "not valid JSON", "Check that this is the file you meant.");
   return document;

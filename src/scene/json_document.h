@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The tree behind json_reader.h: every value with its byte offset, and the first problem found.
+// The tree behind json_reader.h: every value with its byte offset, and the problems found.
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -33,10 +32,9 @@ struct JsonDocument {
   std::vector<std::string> words;
   /// Keys that were asked for, per object: what to suggest for an unknown key.
   std::unordered_map<int, std::set<std::string>> asked;
-  std::optional<Error> firstError;
-
+  std::vector<Error> errors;  ///< in the order found; at most kMostErrors
   std::string place(std::size_t offset) const;
-  /// Keeps the problem if it is the first; adds the offending line and a caret.
+  /// Keeps the problem, with the offending line and a caret.
   void fail(std::size_t offset, std::string problem, std::string remedy);
   std::string excerpt(std::size_t offset) const;
 };

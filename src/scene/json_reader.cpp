@@ -36,10 +36,13 @@ std::string wordList(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// An unread member is an unknown key; nested ones are looked at when their parent was read.
+/// An unread member is an unknown key; nested ones are looked at when their parent was read. What
+/// is merely unused counts only in a file without other problems: they may have kept it from being
+/// read.
 void findUnknownKeys(JsonDocument& doc) {
   static const std::vector<std::string> kAlwaysAllowed{"comment", "source"};
-  for (std::size_t i = 0; i < doc.values.size() && !doc.firstError; ++i) {
+  const bool good = doc.errors.empty();
+  for (std::size_t i = 0; i < doc.values.size(); ++i) {
     const auto asked = doc.asked.find(static_cast<int>(i));
     if (doc.values[i].kind != JsonValue::object || asked == doc.asked.end()) continue;
     for (int c = doc.values[i].firstChild; c >= 0; c = doc.values[c].next) {
@@ -48,13 +51,13 @@ void findUnknownKeys(JsonDocument& doc) {
       if (member.read || key == kAlwaysAllowed[0] || key == kAlwaysAllowed[1]) continue;
       const std::vector<std::string> known(asked->second.begin(), asked->second.end());
       const bool unused = asked->second.contains(key);
+      if (unused && !good) continue;
       const std::string near = nearestName(key, known);
       doc.fail(member.keyOffset,
                fmt::format("{} key \"{}\"", unused ? "unused" : "unknown", printable(key)),
                unused         ? "Remove it: nothing reads it here."
                : near.empty() ? "Known here: " + wordList(known) + "."
                               : "Did you mean \"" + near + "\"?");
-      break;
     }
   }
 }
@@ -89,9 +92,15 @@ JsonNode JsonFile::root() const {
 }
 
 Result<void> JsonFile::finish() const {
-  if (!document_->firstError) findUnknownKeys(*document_);
-  if (document_->firstError) return std::unexpected(*document_->firstError);
+  const std::vector<Error> all = problems();
+  if (!all.empty()) return std::unexpected(all.front());
   return {};
+}
+
+std::vector<Error> JsonFile::problems() const {
+  const std::vector<Error> read = document_->errors;
+  findUnknownKeys(*document_);
+  return std::exchange(document_->errors, read);
 }
 
 std::string JsonNode::place() const {

@@ -65,7 +65,7 @@ class JsonNode {
   std::vector<double> asNumbers() const;
   std::vector<JsonNode> asArray() const;
 
-  /// Records a problem at this value (kept if it is the first).
+  /// Records a problem at this value (finish() tells the first).
   void fail(std::string problem, std::string remedy) const;
   /// "file:line:column"
   std::string place() const;
@@ -92,8 +92,10 @@ class JsonFile {
   static Result<JsonFile> parse(std::string text, std::string name);
 
   JsonNode root() const;
-  /// The first problem found, unknown keys included.
+  /// The first problem found, unknown keys included. To be asked once, at the end.
   Result<void> finish() const;
+  /// Instead of finish(): all problems, in the order found.
+  std::vector<Error> problems() const;
 
  private:
   explicit JsonFile(std::shared_ptr<JsonDocument> document) : document_(std::move(document)) {}

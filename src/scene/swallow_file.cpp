@@ -148,6 +148,18 @@ Result<SwallowDef> loadSwallow(const std::filesystem::path& path) {
   return load(path, 0);
 }
 
+Result<std::vector<std::filesystem::path>> swallowFiles(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files{path};
+  while (static_cast<int>(files.size()) <= kMaxBases) {
+    auto file = JsonFile::load(files.back());
+    if (!file) return std::unexpected(file.error());
+    const JsonNode root = file->root();
+    if (!root.isObject() || !root.has("base")) break;
+    files.push_back(files.back().parent_path() / root.text("base"));
+  }
+  return files;
+}
+
 Result<void> applySet(SwallowDef& swallow, const std::string& assignment) {
   const auto dot = assignment.find('.'), equal = assignment.find('=');
   if (dot == std::string::npos || equal == std::string::npos || equal < dot)

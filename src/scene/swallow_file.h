@@ -12,6 +12,9 @@ namespace swallowclip::scene {
 
 Result<kinematics::SwallowDef> loadSwallow(const std::filesystem::path& path);
 
+/// The file and the bases it builds on, nearest first.
+Result<std::vector<std::filesystem::path>> swallowFiles(const std::filesystem::path& path);
+
 /// Applies "track.key=value" (keys onset_s, peak_s, hold_s, offset_s, amplitude, delay_s, speed).
 /// "larynx" and "hyoid" stand for all tracks of theirs (amplitude, delay_s, speed); another onset_s
 /// moves the whole track.

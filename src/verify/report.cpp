@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "plot/chart.h"
+#include "scene/json_text.h"
 
 namespace swallowclip::verify {
 namespace {
@@ -18,20 +19,6 @@ std::string shareOf(const CheckResult& c, double x) {
   return c.absolute ? fmt::format("{:.2g}", x) : fmt::format("{:.3g} %", x * 100);
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n')
-      out += "\\n";
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += fmt::format("\\u{:04x}", static_cast<int>(c));
-    else
-      out += c;
-  }
-  out += '"';
-  return out;
-}
 std::string jsonNumber(double x) {
   return std::isfinite(x) ? fmt::format("{:.9g}", x) : "null";
 }
@@ -102,7 +89,7 @@ std::string tableRows(const CaseResult& result) {
 
 std::string resultsJson(const std::vector<CaseResult>& results) {
   std::string out =
-      fmt::format("{{\n  \"version\": {},\n  \"cases\": [", quoted(SWALLOWCLIP_VERSION));
+      fmt::format("{{\n  \"version\": {},\n  \"cases\": [", scene::quotedJson(SWALLOWCLIP_VERSION));
   bool firstCase = true;
   for (const CaseResult& r : results) {
     out += fmt::format(
@@ -110,10 +97,10 @@ std::string resultsJson(const std::vector<CaseResult>& results) {
         "\"particles\": {}, \"steps\": {}, \"escaped\": {}, \"clamped\": {}, "
         "\"mean_density_error\": {}, \"max_density_error\": {}, \"seconds\": {}, "
         "\"failure\": {},\n     \"checks\": [",
-        firstCase ? "" : ",", quoted(r.name), r.pass, quoted(r.solver),
+        firstCase ? "" : ",", scene::quotedJson(r.name), r.pass, scene::quotedJson(r.solver),
         jsonNumber(r.spacing_m * 1e3), r.particles, r.stats.steps, r.stats.escaped, r.stats.clamped,
         jsonNumber(r.stats.meanDensityError), jsonNumber(r.stats.maxDensityError),
-        jsonNumber(r.seconds), r.failure.empty() ? "null" : quoted(r.failure));
+        jsonNumber(r.seconds), r.failure.empty() ? "null" : scene::quotedJson(r.failure));
     firstCase = false;
     bool firstCheck = true;
     for (const CheckResult& c : r.checks) {
@@ -121,9 +108,10 @@ std::string resultsJson(const std::vector<CaseResult>& results) {
           "{}\n      {{\"quantity\": {}, \"unit\": {}, \"measured\": {}, \"reference\": {}, "
           "\"error\": {}, \"tolerance\": {}, \"absolute\": {}, \"order\": {}, \"pass\": {}, "
           "\"curves\": [{}]}}",
-          firstCheck ? "" : ",", quoted(c.title), quoted(c.unit), jsonNumber(c.measured),
-          jsonNumber(c.reference), jsonNumber(c.error), jsonNumber(c.tolerance), c.absolute,
-          c.order ? jsonNumber(*c.order) : "null", c.pass, curvesJson(c.curves));
+          firstCheck ? "" : ",", scene::quotedJson(c.title), scene::quotedJson(c.unit),
+          jsonNumber(c.measured), jsonNumber(c.reference), jsonNumber(c.error),
+          jsonNumber(c.tolerance), c.absolute, c.order ? jsonNumber(*c.order) : "null", c.pass,
+          curvesJson(c.curves));
       firstCheck = false;
     }
     out += "]}";
