@@ -250,7 +250,7 @@ Result<frame::History> simulateSwallow(const RunOptions& o, const kinematics::Sw
   walls.sealed = [&choreography](double t, int branch) { return choreography.sealed(t, branch); };
   std::optional<bolus::Solver> solver;
   if (o.hasBolus()) {
-    auto started = startBolus(o, *swallow, fluid, walls);
+    auto started = startBolus(o, swallow, fluid, walls);
     if (!started) return std::unexpected(started.error());
     solver.emplace(std::move(*started));
     h.bolus.particleVolume_m3 = solver->particleVolume_m3();
