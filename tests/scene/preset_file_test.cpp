@@ -13,8 +13,14 @@ namespace {
 const std::filesystem::path kPresets =
     std::filesystem::path(SWALLOWCLIP_SOURCE_DIR) / "render_presets";
 
+/// Tests of one file may run side by side: each has its own name.
+std::string scratchFile() {
+  return ::testing::TempDir() + "preset_file_" +
+         ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
+}
+
 Result<render::RenderPreset> fromText(const std::string& json) {
-  const std::string path = ::testing::TempDir() + "preset_file_test.json";
+  const std::string path = scratchFile();
   EXPECT_TRUE(writeFile(path, json));
   auto preset = scene::loadPreset(kPresets, path);
   std::filesystem::remove(path);
@@ -95,8 +101,7 @@ TEST(PresetFile, ABaseIsChangedWhereAskedOnly) {
   const auto wrong = fromText(R"({"name": "t", "base": "trainig"})");
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().text().find("Did you mean \"training\"?"), std::string::npos);
-  const auto circle =
-      fromText(R"({"name": "t", "base": ")" + ::testing::TempDir() + R"(preset_file_test.json"})");
+  const auto circle = fromText(R"({"name": "t", "base": ")" + scratchFile() + R"("})");
   ASSERT_FALSE(circle);
   EXPECT_NE(circle.error().text().find("base on each other"), std::string::npos);
 }
