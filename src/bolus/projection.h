@@ -3,10 +3,11 @@
 // kinematic pressure k = p / rho0 (m^2/s^2); a wall has the pressure of the particle before it:
 //   a_i = (-V sum (k_i + k_j) gradW_ij - 2 k_i grad lambda_i) / (1 + drag_i)
 //   D_i(v) = V sum (v_i - v_j).gradW_ij + 2 (v_i.grad lambda_i - flux_i)
-// solved with k >= 0 by projected gradient steps, scaled by the diagonal and with momentum
-// (Nesterov 1983; restarted as O'Donoghue & Candes 2015): 3 to 14 of them a step. Walls enter
-// nowhere else. Inner loops in single precision; what changes a velocity is summed in double from
-// antisymmetric terms, so that momentum is kept.
+// one for velocities, one for places: what density is above rest moves particles apart and leaves
+// their velocities alone, or every rearrangement would stir the flow. Both are solved with k >= 0 by
+// projected gradient steps, scaled by the diagonal and with momentum (Nesterov 1983; restarted as
+// O'Donoghue & Candes 2015). Walls enter nowhere else. Inner loops in single precision; what changes
+// a velocity is summed in double from antisymmetric terms, so that momentum is kept.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -58,19 +59,19 @@ class Projection {
   /// within the step: a_i / (1 + drag_i), the implicit Brinkman term. Without it a narrow slit is
   /// squeezed out as if the fluid had no viscosity.
   void prepare(const Flow& flow, std::span<const double> wallDrag);
-  /// Removes compression rate where rho* would pass one; `velocities` in and out.
+  /// Removes compression rate where rho* would pass one; `velocities` (m/s) in and out.
   ProjectionReport divergenceFree(const Flow& flow, const std::vector<double>& densityRatio,
                                   double dt_s, std::vector<Vec3>& velocities);
-  /// Makes the density at the end of the step at most rho0.
+  /// Makes the density at the end of the step at most rho0; `velocities` are those that move.
   ProjectionReport constantDensity(const Flow& flow, const std::vector<double>& densityRatio,
                                    double dt_s, std::vector<Vec3>& velocities);
-  /// Adds dt times the acceleration by the pressure of the last constantDensity to velocities. Put
-  /// in before friction and taken out (negative dt) after it, it lets friction act on forces that
-  /// are in balance; constantDensity then finds the whole pressure anew.
+  /// Adds dt times the acceleration by the pressure of the last divergenceFree to velocities. Put in
+  /// before friction and taken out (negative dt) after it, it lets friction act on forces that are
+  /// in balance; divergenceFree then finds the whole pressure anew.
   void pushByLastPressure(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
   void resize(int particles);
 
-  /// Force per area (and rho0) that both projections of the last step transmit, m^2/s^2,
+  /// Force per area (and rho0) that the velocities' projection of the last step transmits, m^2/s^2,
   /// [particle]: the mean normal stress sum V (k_i + k_j)/2 r |gradW| / 3 of the pairs (Irving &
   /// Kirkwood 1950). k itself is a multiplier: among disordered particles, where gradW of a linear
   /// field comes out 10 % small, it is so much larger, and it zigzags from layer to layer.

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <thread>
 
 #include "bolus/solver.h"
+#include "core/parallel.h"
 #include "shapes.h"
 
 namespace swallowclip::bolus {
@@ -39,6 +41,7 @@ Draw draw(std::mt19937& random) {
 /// closingTube with a seal at 70 mm that opens.
 WallMotion sealedTube(const Draw& d) {
   testing::TubeDef tube;
+  tube.edge_m = 2.5e-3;
   tube.leastGap_m = d.gap_m;
   tube.speed_ms = d.speed_ms;
   tube.ramp_m = d.ramp_m;
@@ -61,61 +64,77 @@ WallMotion sealedTube(const Draw& d) {
   return w;
 }
 
+struct Outcome {
+  bool hadRoom = false, lost = false, finite = true;
+  std::string error, place;  // why it stopped
+  Stats stats;
+};
+
+Outcome run(const Draw& d) {
+  Outcome o;
+  const WallMotion walls = sealedTube(d);
+  BolusDef def;
+  def.volume_m3 = d.volume_m3;
+  def.fluid.viscosity_Pas = d.viscosity_Pas;
+  def.swallowedAt_s_m = 0.085;
+  Solver s(def, walls, 1);
+  o.hadRoom = s.seed(0, {0, 0.06}) && s.relax(0, 0.05);
+  if (!o.hadRoom) return o;
+  for (int frame = 1; frame <= 24 && s.ledger().swallowed < s.ledger().start; ++frame) {
+    const auto step = s.advanceTo(frame / 30.0);
+    const Ledger l = s.ledger();
+    o.lost |= l.fluid + l.film + l.swallowed != l.start;
+    if (step) continue;
+    o.error = step.error().problem;
+    o.place = step.error().place;
+    break;
+  }
+  for (const Vec3& x : s.particles().positions) o.finite &= x.allFinite();
+  o.stats = s.stats();
+  return o;
+}
+
 TEST(RandomMotions, NothingLeavesAndNothingIsLost) {
   std::mt19937 random(20261123);
   constexpr int kMotions = 200;
+  std::vector<Draw> draws;
+  for (int k = 0; k < kMotions; ++k) draws.push_back(draw(random));
+  std::vector<Outcome> outcomes(kMotions);
+  ThreadPool pool(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
+  pool.forChunks(kMotions, 1, [&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) outcomes[k] = run(draws[k]);
+  });
   int infeasible = 0, noRoomAtStart = 0;
   double worst = 0;
   std::int64_t clamps = 0;
   for (int k = 0; k < kMotions; ++k) {
-    const Draw d = draw(random);
+    const Draw& d = draws[k];
+    const Outcome& o = outcomes[k];
     SCOPED_TRACE(
         fmt::format("motion {}: gap {:.2f} mm, {:.0f} mm/s, opens at {:.2f} s, {:.3f} Pa.s", k,
                     d.gap_m * 1e3, d.speed_ms * 1e3, d.opensAt_s, d.viscosity_Pas));
-    const WallMotion walls = sealedTube(d);
-    BolusDef def;
-    def.volume_m3 = d.volume_m3;
-    def.fluid.viscosity_Pas = d.viscosity_Pas;
-    def.swallowedAt_s_m = 0.085;
-    Solver s(def, walls, 1);
-    if (!s.seed(0, {0, 0.06})) {
-      ++noRoomAtStart;
-      continue;
+    noRoomAtStart += !o.hadRoom;
+    EXPECT_FALSE(o.lost);
+    EXPECT_TRUE(o.finite);
+    EXPECT_EQ(o.stats.escaped, 0);
+    if (!o.error.empty()) {
+      EXPECT_NE(o.error.find("smaller than the fluid"), std::string::npos) << o.error;
+      EXPECT_NE(o.place.find("t ="), std::string::npos) << o.place;
+      ++infeasible;
+      continue;  // walls that crush what has no way out make any speed
     }
-    if (!s.relax(0, 0.1)) {
-      ++noRoomAtStart;
-      continue;
-    }
-    for (int frame = 1; frame <= 24; ++frame) {
-      const auto step = s.advanceTo(frame / 30.0);
-      const Ledger l = s.ledger();
-      ASSERT_EQ(l.fluid + l.film + l.swallowed, l.start);
-      ASSERT_EQ(s.stats().escaped, 0);
-      if (!step) {
-        EXPECT_NE(step.error().problem.find("smaller than the fluid"), std::string::npos)
-            << step.error().text();
-        EXPECT_NE(step.error().place.find("t ="), std::string::npos);
-        ++infeasible;
-        break;
-      }
-    }
-    if (std::getenv("SWALLOWCLIP_TEST_REPORT"))
-      fmt::print(stderr, "{}: {} steps, {:.2f} m/s, peak {:.2f}, gap {:.2f} mm, {:.3f} Pa.s\n", k,
-                 s.stats().steps, s.stats().maxSpeed_ms, s.stats().maxDensityError, d.gap_m * 1e3,
-                 d.viscosity_Pas);
-    for (const Vec3& x : s.particles().positions) ASSERT_TRUE(x.allFinite());
-    worst = std::max(worst, s.stats().maxSpeed_ms);
-    clamps += s.stats().clamped;
-    ASSERT_LT(s.stats().steps, 200'000);
+    worst = std::max(worst, o.stats.maxSpeed_ms);
+    clamps += o.stats.clamped;
   }
   const std::string report = fmt::format(
-      "{} motions: {} infeasible, {} without room at the start, fastest {:.1f} m/s, {} "
-      "speeds clamped",
+      "{} motions: {} infeasible, {} without room at the start; of the others the fastest "
+      "{:.1f} m/s, {} speeds clamped",
       kMotions, infeasible, noRoomAtStart, worst, clamps);
   RecordProperty("report", report);
   fmt::print("{}\n", report);
   EXPECT_LT(noRoomAtStart, kMotions / 4);
   EXPECT_LT(infeasible, kMotions / 2);
+  EXPECT_EQ(clamps, 0);
 }
 }  // namespace
 }  // namespace swallowclip::bolus
