@@ -88,7 +88,9 @@ TEST_P(BuiltIn, MeasuresAsItselfAndConservesTheBolus) {
     EXPECT_EQ(end.swallowed, 0);
     return;
   }
-  if (component == 4 || score == 0) EXPECT_GE(end.swallowed, 0.95 * end.start);
+  if (component == 4 || score == 0) {
+    EXPECT_GE(end.swallowed, 0.95 * end.start);
+  }
   if (score != 0) return;
   EXPECT_GE(run->value("oral_transit"), 0.35);  // clinical-reference 2
   EXPECT_LE(run->value("oral_transit"), 1.54);
