@@ -103,6 +103,7 @@ void fallSilent() {
     ::close(nowhere);
   }
   ::prctl(PR_SET_DUMPABLE, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a decoder that hangs does not outlive us
 }
 
 void limitMemory(std::uint64_t file_bytes) {
