@@ -27,8 +27,8 @@ Result<void> writeJobFiles(const Plan& plan, const Root& root) {
 }
 
 // `exec` and setpriv: the job is Ninja's own child and dies with it, so that nothing of a killed
-// night goes on in the dark. Descriptor 3 keeps Ninja's pipe open: once a job's pipe is closed Ninja
-// does nothing but wait for that job, starts no other and hears no signal.
+// night goes on in the dark. Descriptor 3 keeps Ninja's pipe open: once a job's pipe is closed
+// Ninja does nothing but wait for that job, starts no other and hears no signal.
 std::string ninjaText(const Plan& plan, const Root& root, const std::string& program) {
   std::string text = fmt::format(
       "ninja_required_version = 1.8\nbuilddir = {}\n\nrule job\n"
