@@ -10,6 +10,8 @@
 #include "library/sealed.h"
 #include "library/versions.h"
 #include "scene/json_text.h"
+#include "scene/preset_file.h"
+#include "scene/rules_file.h"
 #include "scene/swallow_file.h"
 
 namespace swallowclip::library {
@@ -89,7 +91,11 @@ struct Cook {
     std::error_code ec;
     if (fs::exists(font, ec))
       if (auto done = file(font); !done) return done;
-    return file(c.options().presetsFolder() / (c.preset + ".json"), "views", c.view);
+    auto look = scene::presetFiles(c.options().presetsFolder(), c.preset);
+    if (!look) return std::unexpected(look.error());
+    for (const fs::path& f : *look)
+      if (auto done = file(f, "views", c.view); !done) return done;
+    return {};
   }
 };
 }  // namespace
@@ -145,6 +151,8 @@ Result<void> cook(Job& job, Inputs& inputs) {
   if (job.stage == Stage::bake || job.stage == Stage::simulate) done = cook.motion();
   if (done && job.stage == Stage::simulate) done = cook.fluid();
   if (done && job.stage == Stage::draw) done = cook.picture();
+  if (done && (job.stage == Stage::measure || job.stage == Stage::draw))
+    done = cook.file(scene::scoringRulesFile(job.choice.options().scenesFolder()));
   if (!done) return done;
   if (job.stage == Stage::verify) {
     const SheetDef& s = job.choice.sheet;

@@ -7,6 +7,7 @@
 #include "library/clip_check.h"
 #include "library/store.h"
 #include "pipeline/clips.h"
+#include "pipeline/confirm.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/simulation.h"
 #include "scene/json_reader.h"
@@ -70,7 +71,7 @@ struct Work {
   Result<void> measure() const {
     auto h = frame::loadHistory(needed(0, "history.h5"));
     if (!h) return std::unexpected(h.error());
-    auto metrics = scoring::measure(*h);
+    auto metrics = pipeline::measureHistory(job.choice.options().scenesFolder(), *h);
     if (!metrics) return std::unexpected(metrics.error());
     return writeFile(part / "measures.json", scene::sideFileText(*h, *metrics));
   }
@@ -81,7 +82,7 @@ struct Work {
     if (!preset) return std::unexpected(preset.error());
     auto h = frame::loadHistory(needed(0, "history.h5"));
     if (!h) return std::unexpected(h.error());
-    auto metrics = scoring::measure(*h);
+    auto metrics = pipeline::measureHistory(job.choice.options().scenesFolder(), *h);
     if (!metrics) return std::unexpected(metrics.error());
     auto times = pipeline::drawClips(o, *preset, *h, *metrics, part, job.choice.stem(), progress);
     if (!times) return std::unexpected(times.error());

@@ -16,6 +16,7 @@
 #include "overlay/resimulate.h"
 #include "overlay/retime.h"
 #include "pipeline/components.h"
+#include "pipeline/confirm.h"
 #include "pipeline/simulation.h"
 #include "scene/preset_file.h"
 #include "scoring/measure.h"
@@ -108,9 +109,9 @@ struct Timed {
   frame::Meta meta;
 };
 
-Result<Timed> warped(const frame::History& model, const Marks& marks, const study::StudyInfo& info,
-                     const Clock& clock) {
-  auto metrics = scoring::measure(model);
+Result<Timed> warped(const RunOptions& o, const frame::History& model, const Marks& marks,
+                     const study::StudyInfo& info, const Clock& clock) {
+  auto metrics = pipeline::measureHistory(o.scenesFolder(), model);
   if (!metrics) return std::unexpected(metrics.error());
   auto warp = TimeWarp::make(pairEvents(marks, info, *metrics), 1 / info.rate_hz());
   if (!warp) return std::unexpected(warp.error());
@@ -121,7 +122,7 @@ Result<Timed> warped(const frame::History& model, const Marks& marks, const stud
 Result<Timed> resimulated(const RunOptions& o, const frame::History& model, const Marks& marks,
                           const study::StudyInfo& info, const Clock& clock, double fps,
                           Progress& progress) {
-  auto metrics = scoring::measure(model);
+  auto metrics = pipeline::measureHistory(o.scenesFolder(), model);
   if (!metrics) return std::unexpected(metrics.error());
   fs::path file;
   auto swallow = swallowOf(o, &model, &file);
@@ -136,7 +137,7 @@ Result<Timed> resimulated(const RunOptions& o, const frame::History& model, cons
     progress.stage("moving the motion");
     auto test = pipeline::simulateSwallow(dry, moved->swallow, file, fps, progress);
     if (!test) return std::unexpected(test.error());
-    auto found = scoring::measure(*test);
+    auto found = pipeline::measureHistory(o.scenesFolder(), *test);
     if (!found) return std::unexpected(found.error());
     for (std::size_t k = 0; k < pairs.size(); ++k)
       if (const auto* e = found->event(pairs[k].name); e && e->time_s)
@@ -152,7 +153,7 @@ Result<Timed> resimulated(const RunOptions& o, const frame::History& model, cons
   std::string inputs = history->meta.inputsSha256;
   for (const EventPair& p : pairs) inputs += fmt::format("{} {:.9g}\n", p.name, p.study_s);
   history->meta.inputsSha256 = sha256Hex(inputs);
-  auto measured = scoring::measure(*history);
+  auto measured = pipeline::measureHistory(o.scenesFolder(), *history);
   if (!measured) return std::unexpected(measured.error());
   const TimeWarp warp = TimeWarp::shift(moved->cue_s);
   return Timed{retimed(*history, warp, clock.time_s, clock.rate.hz()), *measured, warp,
@@ -210,11 +211,11 @@ Result<void> overlay(const RunOptions& given, Progress& progress) {
   if (o.overlay.demo) {
     history = modelHistory(o, preset->fps, progress);
     if (!history) return std::unexpected(history.error());
-    auto metrics = scoring::measure(*history);
+    auto metrics = pipeline::measureHistory(o.scenesFolder(), *history);
     if (!metrics) return std::unexpected(metrics.error());
     auto other = demoSwallow(o, *metrics, preset->fps, progress);
     if (!other) return std::unexpected(other.error());
-    auto otherMetrics = scoring::measure(*other);
+    auto otherMetrics = pipeline::measureHistory(o.scenesFolder(), *other);
     if (!otherMetrics) return std::unexpected(otherMetrics.error());
     progress.stage("filming the study");
     auto made =
@@ -236,7 +237,7 @@ Result<void> overlay(const RunOptions& given, Progress& progress) {
   const Clock clock = makeClock(info);
   auto timed = o.overlay.resimulate
                    ? resimulated(o, *history, *marks, info, clock, preset->fps, progress)
-                   : warped(*history, *marks, info, clock);
+                   : warped(o, *history, *marks, info, clock);
   if (!timed) return std::unexpected(timed.error());
   auto registration = Registration::make(*marks, timed->model, clock.clipFrameOf);
   if (!registration) return std::unexpected(registration.error());

@@ -65,25 +65,28 @@ Colour readColour(const JsonNode& node, std::string_view key, const Colour& defa
   return defaultValue;
 }
 
+Result<std::filesystem::path> palettePath(const std::filesystem::path& presetsFolder,
+                                          const std::string& nameOrFile) {
+  if (nameOrFile.ends_with(".json")) return nameOrFile;
+  const std::filesystem::path path = presetsFolder / "palettes" / (nameOrFile + ".json");
+  std::vector<std::string> known;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path(), error))
+    known.push_back(entry.path().stem().string());
+  std::ranges::sort(known);
+  if (std::ranges::find(known, nameOrFile) != known.end()) return path;
+  const std::string near = nearestName(nameOrFile, known);
+  return usageError("palette", fmt::format("unknown palette \"{}\"", nameOrFile),
+                    near.empty()
+                        ? fmt::format("Known: {}; or a .json file.", fmt::join(known, ", "))
+                        : fmt::format("Did you mean \"{}\"?", near));
+}
+
 Result<Palette> loadPalette(const std::filesystem::path& presetsFolder,
                             const std::string& nameOrFile) {
-  std::filesystem::path path = nameOrFile;
-  if (!nameOrFile.ends_with(".json")) {
-    path = presetsFolder / "palettes" / (nameOrFile + ".json");
-    std::vector<std::string> known;
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(path.parent_path(), error))
-      known.push_back(entry.path().stem().string());
-    std::ranges::sort(known);
-    if (std::ranges::find(known, nameOrFile) == known.end()) {
-      const std::string near = nearestName(nameOrFile, known);
-      return usageError("palette", fmt::format("unknown palette \"{}\"", nameOrFile),
-                        near.empty()
-                            ? fmt::format("Known: {}; or a .json file.", fmt::join(known, ", "))
-                            : fmt::format("Did you mean \"{}\"?", near));
-    }
-  }
-  auto file = JsonFile::load(path);
+  auto path = palettePath(presetsFolder, nameOrFile);
+  if (!path) return std::unexpected(path.error());
+  auto file = JsonFile::load(*path);
   if (!file) return std::unexpected(file.error());
   const JsonNode root = file->root();
   Palette palette;

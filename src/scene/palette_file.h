@@ -16,6 +16,10 @@ namespace swallowclip::scene {
 
 using Palette = std::map<std::string, render::Colour>;
 
+/// Where the palette of that name is.
+Result<std::filesystem::path> palettePath(const std::filesystem::path& presetsFolder,
+                                          const std::string& nameOrFile);
+
 /// A name in PRESETS/palettes, or (if it ends in ".json") the path of a palette file.
 Result<Palette> loadPalette(const std::filesystem::path& presetsFolder,
                             const std::string& nameOrFile);

@@ -271,6 +271,26 @@ Result<RenderPreset> readPreset(const JsonFile& file, const std::filesystem::pat
 }
 }  // namespace
 
+Result<std::vector<std::filesystem::path>> presetFiles(const std::filesystem::path& presetsFolder,
+                                                       const std::string& nameOrFile) {
+  std::vector<std::filesystem::path> files;
+  std::string next = nameOrFile, palette;
+  for (int depth = 0; !next.empty() && depth <= kDeepestBase; ++depth) {
+    auto path = presetPath(presetsFolder, next);
+    if (!path) return std::unexpected(path.error());
+    auto file = JsonFile::load(*path);
+    if (!file) return std::unexpected(file.error());
+    files.push_back(*path);
+    if (palette.empty()) palette = file->root().text("palette", "");
+    next = file->root().text("base", "");
+  }
+  if (palette.empty()) return files;
+  auto path = palettePath(presetsFolder, palette);
+  if (!path) return std::unexpected(path.error());
+  files.push_back(*path);
+  return files;
+}
+
 std::vector<std::string> presetNames(const std::filesystem::path& presetsFolder) {
   std::vector<std::string> names;
   std::error_code error;

@@ -21,6 +21,10 @@ Result<render::RenderPreset> loadPreset(const std::filesystem::path& presetsFold
 Result<render::RenderPreset> loadPresetFile(const std::filesystem::path& path,
                                             const std::filesystem::path& presetsFolder);
 
+/// All that a look is read from: its preset, what that is based on, and its palette.
+Result<std::vector<std::filesystem::path>> presetFiles(const std::filesystem::path& presetsFolder,
+                                                       const std::string& nameOrFile);
+
 /// Stems of the *.json files of a folder, sorted. For lists and "did you mean".
 std::vector<std::string> presetNames(const std::filesystem::path& presetsFolder);
 }  // namespace swallowclip::scene

@@ -21,8 +21,8 @@ short() {
 }
 short 0 0.5
 short 1 0.5
-sed -e 's/"width_px": 854/"width_px": 192/' -e 's/"height_px": 480/"height_px": 108/' \
-  -e 's/"name": "small"/"name": "tiny"/' "$source/render_presets/small.json" >"$preset"
+sed -e 's/"width_px": 1280/"width_px": 192/' -e 's/"height_px": 720/"height_px": 108/' \
+  -e 's/"name": "training"/"name": "tiny"/' "$source/render_presets/training.json" >"$preset"
 
 # spec FILE MISSING_CLIPS_ALLOWED: two scores, two boluses, two views: 26 jobs, 8 clips. A draft,
 # since a swallow cut off shows no score.

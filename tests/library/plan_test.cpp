@@ -52,7 +52,7 @@ TEST_F(PlanTest, RemarksAndReadmesChangeNothing) {
 
 TEST_F(PlanTest, AViewOfAPresetRedrawsThatViewOnly) {
   const Plan before = plan(test::kSpec);
-  change("render_presets/small.json", "\"captionTitle\": \"S-I tongue view",
+  change("render_presets/training.json", "\"captionTitle\": \"S-I tongue view",
          "\"captionTitle\": \"S-I view of the tongue");
   const auto names = changed(before, plan(test::kSpec));
   EXPECT_EQ(byStage(names), (std::map<std::string, int>{{"draw", 4}, {"verify", 4}}));

@@ -59,7 +59,7 @@ TEST_F(RulesFile, CutsOutOfOrderAreRefused) {
 
 TEST_F(RulesFile, IsToldFromOtherFilesByItsKeys) {
   EXPECT_EQ(fileKind(scoringRulesFile(kScenes)), FileKind::scoringRules);
-  EXPECT_TRUE(checkFile(scoringRulesFile(kScenes), FileKind::scoringRules));
+  EXPECT_TRUE(checkFile(scoringRulesFile(kScenes), FileKind::scoringRules, kScenes));
 }
 
 class Set : public testing::Test {
