@@ -2,9 +2,8 @@
 // Particle shifting (Lind et al. 2012, J. Comput. Phys. 231:1499): particles that a flow has drawn
 // into strings move down the gradient of their own concentration, relative to the fluid:
 //   w_i = -A dx rate_i dx (sum V gradW_ij + grad lambda_i),  v_i += dt (w_i . grad) v_i
-// the second so that they carry the velocity of where they get to, and not their old one there: by
-// strings alone Taylor-Green vortices lose a fifth of their speed, by bare shifting a power-law
-// profile 2 % of its peak.
+// where w_i in the second is what shifting and the density's projection together make of it, so
+// that particles carry the velocity of where they get to, and not their old one there.
 #pragma once
 #include <vector>
 
@@ -16,10 +15,14 @@ class Shifting {
  public:
   /// `moving` becomes `velocities` plus the velocity of shifting (m/s, [particle]). Nothing happens
   /// near a free surface, whose own gradient is none to be evened out.
-  void apply(const Flow& flow, const std::vector<double>& densityRatio, double spacing_m,
-             double dt_s, std::vector<Vec3>& velocities, std::vector<Vec3>& moving);
+  void shift(const Flow& flow, const std::vector<double>& densityRatio, double spacing_m,
+             const std::vector<Vec3>& velocities, std::vector<Vec3>& moving);
+  /// Gives shifted particles the velocity of where `moving` takes them in dt_s; momentum is kept.
+  void carry(const Flow& flow, double dt_s, const std::vector<Vec3>& moving,
+             std::vector<Vec3>& velocities);
 
  private:
-  std::vector<Vec3> shift_, carried_;  // [slot]
+  std::vector<Mat3> slope_;            // [slot], 1/s; zero where nothing is shifted
+  std::vector<Vec3> shift_, carried_;  // [slot], m/s
 };
 }  // namespace swallowclip::bolus

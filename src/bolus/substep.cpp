@@ -135,9 +135,9 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   if (settlingViscosity_Pas == 0) projection.prepare(flow, viscosity.wallDrag());
   projection.pushByLastPressure(flow, -dt_s, v);
   report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
-  moving = v;
-  shifting.apply(flow, particles.densityRatio, def.spacing_m, dt_s, v, moving);
+  shifting.shift(flow, particles.densityRatio, def.spacing_m, v, moving);
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
+  shifting.carry(flow, dt_s, moving, v);
   projection.stress_m2s2(flow, particles.pressure_Pa);
   for (double& p : particles.pressure_Pa) p *= def.fluid.density_kgm3;
 }
