@@ -29,9 +29,9 @@ constexpr double kWorstLeft = 0.02;
 // every step, however short, it would do so at a speed that shortens the next step, and so on to
 // 100 m/s. Assumed (0.05 to 0.2 ms).
 constexpr double kCorrection_s = 1e-4;
-// The rate solve goes on until it leaves this share of what it was to remove, or its tolerance if
-// that is less; and no further than that share of its tolerance. Fluid driven through a long gap
-// needs it: the compression that drives it is small beside what pressure and friction exchange.
+// A solve goes on until it leaves this share of what it was to remove, or its tolerance if
+// that is less; and no further than the second share of its tolerance. Fluid driven through a long
+// gap needs it: the compression that drives it is small beside what pressure and friction exchange.
 constexpr double kRelative = 2e-3, kFloor = 1e-4;  // assumed (1e-3 to 5e-3; 1e-5 to 1e-3)
 // Density that lacks less than this lies between particles that are in disorder, not in an opening:
 // of it velocities may fill the less, the smaller it is. Else a fluid at rest would fall into it

@@ -14,35 +14,17 @@
 #include "scene/anatomy_file.h"
 #include "scene/json_reader.h"
 #include "scene/lumen_file.h"
+#include "section.h"
 
 namespace swallowclip::anatomy {
 namespace {
 
-using Segment = std::pair<Vec2, Vec2>;  ///< (y, z) in mm
+using test::distance_mm;
+using test::section;
+using test::Segment;
 
 std::vector<Segment> midsagittal(const TriMesh& mesh) {
-  const double x_m = 1e-7;  // beside the vertices of x = 0
-  std::vector<Segment> out;
-  for (const Triangle& t : mesh.triangles) {
-    std::vector<Vec2> cut;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 &a = mesh.positions[t[k]], &b = mesh.positions[t[(k + 1) % 3]];
-      const double da = a.x() - x_m, db = b.x() - x_m;
-      if (da * db < 0) cut.push_back((a + da / (da - db) * (b - a)).tail<2>() * 1e3);
-    }
-    if (cut.size() == 2) out.push_back({cut[0], cut[1]});
-  }
-  return out;
-}
-
-double distance_mm(const Vec2& p, const std::vector<Segment>& segments) {
-  double best = std::numeric_limits<double>::max();
-  for (const auto& [a, b] : segments) {
-    const Vec2 d = b - a;
-    const double f = std::clamp((p - a).dot(d) / std::max(d.squaredNorm(), 1e-12), 0.0, 1.0);
-    best = std::min(best, (p - a - f * d).norm());
-  }
-  return best;
+  return section(mesh, 1e-7);  // beside the vertices of x = 0
 }
 
 struct Person {

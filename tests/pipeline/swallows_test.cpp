@@ -80,10 +80,8 @@ TEST_P(BuiltIn, MeasuresAsItselfAndConservesTheBolus) {
   }
   EXPECT_LE(run->history.meta.meanDensityError, 0.003);
   EXPECT_LE(run->history.meta.shareAboveTenPercent, 0.01);
-  if (!openLarynx) {
-    EXPECT_LE(run->history.meta.maxDensityError, 0.15);
-    EXPECT_LE(run->history.meta.maxSpeed_ms, 3);
-  }
+  EXPECT_LE(run->history.meta.maxDensityError, 0.15);
+  EXPECT_LE(run->history.meta.maxSpeed_ms, 3);
   if (score == 4 && component <= 5) {
     EXPECT_EQ(end.swallowed, 0);
     return;
