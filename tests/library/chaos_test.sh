@@ -44,10 +44,9 @@ echo "$rounds rounds of up to $round_ms ms, $finished had finished before the ki
 
 # 2. Damage by hand.
 night "$library" || fail "after the kills: $(cat "$folder/errors")"
-history=$(ls "$library"/store/*/*/history.h5 | head -1)
+history=$(product 'simulate c04-s0-thin' history.h5)
 printf 'garbage' | dd of="$history" bs=1 seek=3000 conv=notrunc 2>/dev/null
-clip=$(ls "$library"/store/*/*/c04-s1-honey-oblique.mp4 | head -1)
-truncate -s 100 "$clip"
+truncate -s 100 "$(product 'draw tiny/c04/c04-s1-honey-oblique' c04-s1-honey-oblique.mp4)"
 retitle ''
 night "$library" || fail "after the damage: $(cat "$folder/errors")"
 same "$library" "$folder/reference" || fail 'not the bytes of an undisturbed night'
@@ -55,8 +54,7 @@ same "$library" "$folder/reference" || fail 'not the bytes of an undisturbed nig
 # 3. A job that always crashes: setpriv starts every job, so a false one can poison it.
 short 1 0.55
 night "$folder/reference" || fail 'the undisturbed night with another swallow'
-key=$("$program" nightly --spec "$folder/spec.json" --out "$library" --plan |
-  sed -n 's/^\([0-9a-f]*\)  simulate c04-s1-honey .*/\1/p')
+key=$(key 'simulate c04-s1-honey')
 mkdir "$folder/bin"
 cat >"$folder/bin/setpriv" <<END
 #!/bin/sh

@@ -52,6 +52,15 @@ night() {
     >"$folder/summary" 2>"$folder/errors"
 }
 
+# key JOB: of the plan as things are now
+key() {
+  "$program" nightly --spec "$folder/spec.json" --out "$library" --plan |
+    sed -n "s/^\([0-9a-f]*\)  $1  <-.*/\1/p"
+}
+
+# product JOB FILE: where it is kept
+product() { echo "$library"/store/*/"$(key "$1")/$2"; }
+
 # whole LIBRARY: is what the link shows complete and unharmed at this moment?
 whole() {
   shown=$(readlink -f "$1/current") || return 0

@@ -47,7 +47,7 @@ sed -i 's/"viscosity_Pas": 0.005/"viscosity_Pas": 0.004/' "$folder/data/scenes/b
 sed -i 's/"From above"/"S-I tongue view"/' "$preset"
 expect 0 published 'everything as it was: all products are still there'
 
-history=$(ls "$library"/store/*/*/history.h5 | head -1)
+history=$(product 'simulate c04-s0-thin' history.h5)
 printf 'x' | dd of="$history" bs=1 seek=5000 conv=notrunc 2>/dev/null
 before=$(readlink "$library/current")
 expect 1 unchanged 'one damaged history'
