@@ -28,18 +28,13 @@ std::map<std::string, std::string> Memory::digested(const Job& job) {
 // Lines "NAME \t what \t digest" and "NAME \t \t cost"; a line that can't be read is left out,
 // which costs a "why" and an estimate.
 Memory::Memory(std::filesystem::path file) : file_(std::move(file)) {
-  std::error_code ec;
-  if (!std::filesystem::exists(file_, ec)) return;
-  std::istringstream lines(readFile(file_).value_or(std::string()));
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t a = line.find('\t'), b = line.find('\t', a + 1);
-    if (a == std::string::npos || b == std::string::npos) continue;
-    Entry& entry = entries_[line.substr(0, a)];
-    const std::string what = line.substr(a + 1, b - a - 1), value = line.substr(b + 1);
-    if (what.empty())
-      std::istringstream(value) >> entry.cost_s;
+  for (const auto& c : readTable(file_)) {
+    if (c.size() != 3) continue;
+    Entry& entry = entries_[c[0]];
+    if (c[1].empty())
+      std::istringstream(c[2]) >> entry.cost_s;
     else
-      entry.recipe[what] = value;
+      entry.recipe[c[1]] = c[2];
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "library/nightly.h"
 
+#include <fmt/chrono.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -37,14 +38,6 @@ double processorTime_s() {
       sum += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   }
   return sum;
-}
-
-std::string utcNow() {
-  const std::time_t t = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm tm{};
-  ::gmtime_r(&t, &tm);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}", tm.tm_year + 1900, tm.tm_mon + 1, tm.tm_mday,
-                     tm.tm_hour, tm.tm_min);
 }
 
 struct Evening {
@@ -98,16 +91,14 @@ struct Evening {
 Result<void> Evening::finish(const Tonight& tonight, double wall_s) {
   lookAgain();
   Summary s;
-  s.when = utcNow();
+  s.when = fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::time(nullptr)));
   s.jobs = static_cast<int>(plan.jobs.size());
   s.run = static_cast<int>(tonight.jobs.size());
   s.failed = plan.staleCount();
   s.wall_s = wall_s;
   s.processors = options.library.publish ? 0 : options.jobs;
   for (const PlannedJob& p : plan.jobs)
-    if (p.marker &&
-        std::ranges::any_of(tonight.jobs, [&](const auto& j) { return j.first == p.job.key; }))
-      s.cpu_s[name(p.job.stage)] += p.marker->cpu_s;
+    if (p.marker && tonight.has(p.job.key)) s.cpu_s[name(p.job.stage)] += p.marker->cpu_s;
   Night night = gatherNight(plan, root);
   s.missing = static_cast<int>(night.missing.size());
   const std::optional<Night> last = publishedNight(root);

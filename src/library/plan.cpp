@@ -43,29 +43,23 @@ class Builder {
     // A history is shared by all presets of one frame rate.
     const std::string rate = *fps == 30 ? "" : fmt::format(" at {} frames/s", *fps);
     const std::string swallow = fmt::format("c{:02}-s{}", entry.component, entry.score);
-    PlannedClip clip;
-    clip.component = entry.component;
-    clip.score = entry.score;
-    clip.bolus = bolus;
-    clip.view = view;
-    clip.preset = preset;
     auto bake = job(Stage::bake, swallow + rate, c, {});
     if (!bake) return std::unexpected(bake.error());
     c.bolus = bolus;
-    clip.name = fmt::format("{}/c{:02}/{}-{}", preset, entry.component, c.stem(), view);
+    const std::string name =
+        fmt::format("{}/c{:02}/{}-{}", preset, entry.component, c.stem(), view);
     auto simulate = job(Stage::simulate, c.stem() + rate, c, {*bake});
     if (!simulate) return std::unexpected(simulate.error());
     auto measure = job(Stage::measure, c.stem() + rate, c, {*simulate});
     if (!measure) return std::unexpected(measure.error());
     c.preset = preset;
     c.view = view;
-    auto draw = job(Stage::draw, clip.name, c, {*simulate, *measure});
+    auto draw = job(Stage::draw, name, c, {*simulate, *measure});
     if (!draw) return std::unexpected(draw.error());
     c.sheet = plan_.spec.sheet;
-    auto verify = job(Stage::verify, clip.name, c, {*measure, *draw});
+    auto verify = job(Stage::verify, name, c, {*measure, *draw});
     if (!verify) return std::unexpected(verify.error());
-    clip.jobs = {*bake, *simulate, *measure, *draw, *verify};
-    plan_.clips.push_back(std::move(clip));
+    plan_.clips.push_back({name, {*bake, *simulate, *measure, *draw, *verify}});
     return {};
   }
 

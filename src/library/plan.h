@@ -23,9 +23,7 @@ struct PlannedJob {
 };
 
 struct PlannedClip {
-  std::string name;  ///< "small/c04/c04-s3-honey-oblique"
-  int component = 0, score = 0;
-  std::string bolus, view, preset;
+  std::string name;           ///< "small/c04/c04-s3-honey-oblique"
   std::array<int, 5> jobs{};  ///< by stage, indices into Plan::jobs
 };
 
@@ -63,6 +61,9 @@ Result<Plan> makePlan(const SpecDef& spec, const pipeline::RunOptions& options);
 
 /// Looks up every product; damaged ones are taken out of the store when `repair`.
 void lookUp(Plan& plan, Store& store, const Memory& memory, bool repair);
+
+/// Cells of a file with tabs between them; nothing of a file that can't be read.
+std::vector<std::vector<std::string>> readTable(const std::filesystem::path& file);
 
 /// The graph as text, one line per job with its state.
 std::string planText(const Plan& plan);

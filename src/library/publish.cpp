@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "library/publish.h"
 
+#include <fmt/chrono.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <cstring>
+#include <ctime>
 #include <set>
 
 #include "core/file.h"
@@ -37,11 +38,8 @@ std::vector<std::string> nightNames(const Root& root) {
 
 std::string nextName(const Root& root) {
   const auto names = nightNames(root);
-  const auto today = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
-  const std::chrono::year_month_day date(today);
-  return fmt::format("n{:06}-{:04}{:02}{:02}", names.empty() ? 1 : numberOf(names.front()) + 1,
-                     static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                     static_cast<unsigned>(date.day()));
+  return fmt::format("n{:06}-{:%Y%m%d}", names.empty() ? 1 : numberOf(names.front()) + 1,
+                     fmt::gmtime(std::time(nullptr)));
 }
 
 std::string currentName(const Root& root) {

@@ -16,23 +16,13 @@ constexpr std::size_t kLogTail = 4000;  // bytes of a failed job's log: its last
 constexpr std::size_t kMostTrend = 60;  // nights in the charts: two months
 
 std::string html(std::string_view text) {
+  static const std::map<char, std::string> kNames{
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
+  for (const char c : text) {
+    const auto at = kNames.find(c);
+    out += at == kNames.end() ? std::string(1, c) : at->second;
+  }
   return out;
 }
 
@@ -126,11 +116,12 @@ class Page {
     std::vector<std::string> components, scores, boluses, views, presets;
     std::string items;
     for (const PlannedClip& c : r_.plan.clips) {
-      components.push_back(fmt::format("{}", c.component));
-      scores.push_back(fmt::format("{}", c.score));
-      boluses.push_back(c.bolus);
-      views.push_back(c.view);
-      presets.push_back(c.preset);
+      const Choice& shows = choice(c);
+      components.push_back(fmt::format("{}", shows.component));
+      scores.push_back(fmt::format("{}", shows.score));
+      boluses.push_back(shows.bolus);
+      views.push_back(shows.view);
+      presets.push_back(shows.preset);
       items += item(c);
     }
     return "<h2>Clips</h2>\n<form class=\"filters\" onsubmit=\"return false\">\n"
@@ -144,7 +135,10 @@ class Page {
            items + "</ul>\n";
   }
 
+  const Choice& choice(const PlannedClip& c) const { return r_.plan.jobs[c.jobs[4]].job.choice; }
+
   std::string item(const PlannedClip& c) const {
+    const Choice& is = choice(c);
     const NightClip* shown = r_.shown ? r_.shown->find(c.name) : nullptr;
     const auto change = changes_.find(c.name);
     const auto missing = missing_.find(c.name);
@@ -161,7 +155,7 @@ class Page {
       picture = fmt::format(
           "<a href=\"{}\"><img loading=\"lazy\" src=\"{}\" alt=\"Component {}, "
           "score {}, {} bolus, {} view\"></a>",
-          link(".mp4"), link("thumb"), c.component, c.score, html(c.bolus), html(c.view));
+          link(".mp4"), link("thumb"), is.component, is.score, html(is.bolus), html(is.view));
       links = fmt::format("<p><a href=\"{}\">sheet</a> <a href=\"{}\">measures</a></p>",
                           link("sheet"), link(".json"));
     }
@@ -173,7 +167,7 @@ class Page {
         "<li data-state=\"{0}\" data-component=\"{1}\" data-score=\"{2}\" data-bolus=\"{3}\" "
         "data-view=\"{4}\" data-preset=\"{5}\" data-words=\"{6} {0}\">{7}<p class=\"name\">{6}</p>"
         "<p><span class=\"tag {0}\">{0}</span> {8}</p>{9}</li>\n",
-        state, c.component, c.score, html(c.bolus), html(c.view), html(c.preset), html(c.name),
+        state, is.component, is.score, html(is.bolus), html(is.view), html(is.preset), html(c.name),
         picture, html(why), links);
   }
 
@@ -185,7 +179,7 @@ class Page {
       for (const PlannedJob& p : r_.plan.jobs) {
         if (p.job.stage != stage) continue;
         ++all;
-        if (!p.marker || !tonight(p.job.key)) continue;
+        if (!p.marker || !r_.tonight.has(p.job.key)) continue;
         ++run;
         sum_s += p.marker->cpu_s;
         most_s = std::max(most_s, p.marker->cpu_s);
@@ -198,10 +192,6 @@ class Page {
     return "<h2>Stages</h2>\n<table><tr><th>stage</th><th>jobs</th><th>made tonight</th>"
            "<th>processor time (s)</th><th>mean (s)</th><th>longest (s)</th></tr>\n" +
            rows + "</table>\n";
-  }
-
-  bool tonight(const std::string& key) const {
-    return std::ranges::any_of(r_.tonight.jobs, [&](const auto& j) { return j.first == key; });
   }
 
   std::string reasons() const {

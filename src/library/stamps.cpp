@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <sys/stat.h>
 
-#include <sstream>
+#include <fstream>
 
 #include "core/digest.h"
 #include "core/file.h"
@@ -10,17 +10,9 @@
 namespace swallowclip::library {
 namespace fs = std::filesystem;
 
-// One line per file: hash, size, times, inode, path; the last line is a hash of all before it.
+// One line per file: hash, size, times, inode, path. What is damaged fits no file any more.
 Stamps::Stamps(fs::path file) : file_(std::move(file)) {
-  std::error_code ec;
-  if (!fs::exists(file_, ec)) return;
-  const auto text = readFile(file_);
-  if (!text) return;
-  const std::size_t end = text->rfind("seal ");
-  if (end == std::string::npos ||
-      text->substr(end) != "seal " + sha256Hex(std::string_view(*text).substr(0, end)) + "\n")
-    return;
-  std::istringstream lines(text->substr(0, end));
+  std::ifstream lines(file_);
   for (Stamp s; lines >> s.sha256 >> s.bytes >> s.modified_ns >> s.changed_ns >> s.inode;) {
     std::string path;
     lines.ignore(1);
@@ -78,6 +70,6 @@ Result<void> Stamps::save() const {
   for (const auto& [path, s] : seen_)
     text += fmt::format("{} {} {} {} {} {}\n", s.sha256, s.bytes, s.modified_ns, s.changed_ns,
                         s.inode, path);
-  return writeFile(file_, text + "seal " + sha256Hex(text) + "\n");
+  return writeFile(file_, text);
 }
 }  // namespace swallowclip::library

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "library/summary.h"
 
+#include <algorithm>
+#include <fstream>
 #include <sstream>
 
 #include "core/file.h"
@@ -11,18 +13,6 @@ namespace {
 constexpr std::size_t kMostNights = 1000;  // lines kept for the trends: almost three years
 constexpr const char* kOutcomes[] = {"published", "unchanged", "kept"};
 
-std::string textOf(const std::filesystem::path& file) {
-  std::error_code ec;
-  return std::filesystem::exists(file, ec) ? readFile(file).value_or(std::string()) : "";
-}
-
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> all;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, '\t');) all.push_back(cell);
-  return all;
-}
-
 template <class T>
 T number(const std::string& cell) {
   T value{};
@@ -30,6 +20,17 @@ T number(const std::string& cell) {
   return value;
 }
 }  // namespace
+
+std::vector<std::vector<std::string>> readTable(const std::filesystem::path& file) {
+  std::vector<std::vector<std::string>> rows;
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream in(line);
+    auto& row = rows.emplace_back();
+    for (std::string cell; std::getline(in, cell, '\t');) row.push_back(cell);
+  }
+  return rows;
+}
 
 Result<void> saveTonight(const Tonight& tonight, const Root& root) {
   std::string text = fmt::format("{:.3f}\n", tonight.started_s);
@@ -39,12 +40,16 @@ Result<void> saveTonight(const Tonight& tonight, const Root& root) {
 
 Tonight loadTonight(const Root& root) {
   Tonight tonight;
-  std::istringstream in(textOf(root.run() / "tonight.tsv"));
-  std::string line;
-  if (std::getline(in, line)) tonight.started_s = number<double>(line);
-  while (std::getline(in, line))
-    if (const auto c = cells(line); c.size() == 2) tonight.jobs.emplace_back(c[0], c[1]);
+  for (const auto& c : readTable(root.run() / "tonight.tsv"))
+    if (c.size() == 2)
+      tonight.jobs.emplace_back(c[0], c[1]);
+    else if (c.size() == 1)
+      tonight.started_s = number<double>(c[0]);
   return tonight;
+}
+
+bool Tonight::has(const std::string& key) const {
+  return std::ranges::any_of(jobs, [&](const auto& job) { return job.first == key; });
 }
 
 double Summary::cpuSum_s() const {
@@ -76,9 +81,7 @@ std::string summaryJson(const Summary& s, const Root& root) {
 
 std::vector<Summary> loadNights(const Root& root) {
   std::vector<Summary> nights;
-  std::istringstream in(textOf(root.run() / "nights.tsv"));
-  for (std::string line; std::getline(in, line);) {
-    const auto c = cells(line);
+  for (const auto& c : readTable(root.run() / "nights.tsv")) {
     if (c.size() < 10) continue;
     Summary s;
     s.when = c[0];

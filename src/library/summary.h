@@ -14,6 +14,7 @@ namespace swallowclip::library {
 struct Tonight {
   std::vector<std::pair<std::string, std::string>> jobs;  ///< key, why
   double started_s = 0;                                   ///< system clock
+  bool has(const std::string& key) const;
 };
 Result<void> saveTonight(const Tonight& tonight, const Root& root);
 Tonight loadTonight(const Root& root);

@@ -6,10 +6,11 @@ program=$1 source=$2 rounds=${3:-20}
 . "$source/tests/library/common.sh"
 library=$folder/library
 
-# Looks at what is shown, all the time, until told to stop.
+# Looks at what is shown, from the first night on, all the time, until told to stop.
 (
+  until [ -L "$library/current" ] || [ -e "$folder/stop" ]; do sleep 0.05; done
   while [ ! -e "$folder/stop" ]; do
-    whole "$library" || echo "$(readlink "$library/current")" >>"$folder/broken"
+    whole "$library" || readlink "$library/current" >>"$folder/broken" || echo 'no link' >>"$folder/broken"
     sleep 0.05
   done
 ) &
@@ -49,6 +50,7 @@ printf 'garbage' | dd of="$history" bs=1 seek=3000 conv=notrunc 2>/dev/null
 truncate -s 100 "$(product 'draw tiny/c04/c04-s1-honey-oblique' c04-s1-honey-oblique.mp4)"
 retitle ''
 night "$library" || fail "after the damage: $(cat "$folder/errors")"
+[ "$(field run)" = 2 ] || fail "after the damage: $(field run) jobs instead of 2"
 same "$library" "$folder/reference" || fail 'not the bytes of an undisturbed night'
 
 # 3. A job that always crashes: setpriv starts every job, so a false one can poison it.
@@ -80,23 +82,27 @@ spec "$folder/spec.json" 0
 night "$library" || fail 'the last clean night'
 same "$library" "$folder/reference" || fail 'after the poison: not the bytes of an undisturbed night'
 
-# 4. A full disk, where a small file system can be mounted.
-mkdir "$folder/disk"
-if mount -t tmpfs -o size=6m tmpfs "$folder/disk" 2>/dev/null; then
-  trap 'umount "$folder/disk"; tidy' EXIT
-  night "$folder/disk/library" && fail 'a night on a full disk succeeded'
-  [ ! -e "$folder/disk/library/current" ] || fail 'a night on a full disk was shown'
-  mount -o remount,size=200m "$folder/disk"
-  night "$folder/disk/library" || fail "with space again: $(cat "$folder/errors")"
-  same "$folder/disk/library" "$folder/reference" || fail 'full disk: other bytes'
+# 4. A full disk, where a small file system can be mounted. Ballast leaves so many megabytes of it.
+disk=$folder/disk
+leave() { fallocate -l $(($(df --output=avail -B1 "$disk" | tail -1) - $1 * 1048576)) "$disk/ballast"; }
+mkdir "$disk"
+truncate -s 100M "$folder/disk.image" && mkfs.ext4 -q -m 0 "$folder/disk.image"
+if mount -o loop "$folder/disk.image" "$disk" 2>/dev/null; then
+  trap 'umount "$disk"; tidy' EXIT
+  rmdir "$disk/lost+found"
+  leave 6
+  night "$disk/library" && fail 'a night on a full disk succeeded'
+  grep -q 'No space left' "$folder/errors" "$disk"/library/run/logs/* || fail 'no word of the full disk'
+  [ ! -e "$disk/library/current" ] || fail 'a night on a full disk was shown'
+  rm "$disk/ballast"
+  night "$disk/library" || fail "with space again: $(cat "$folder/errors")"
+  same "$disk/library" "$folder/reference" || fail 'full disk: other bytes'
   # Shown, then full: the last night stays.
   short 0 0.55
-  used=$(du -sm "$folder/disk" | cut -f1)
-  mount -o remount,size=$((used + 1))m "$folder/disk"
-  night "$folder/disk/library" && fail 'a second night on a full disk succeeded'
-  whole "$folder/disk/library" || fail 'the full disk has harmed what is shown'
-  same "$folder/disk/library" "$folder/reference" || fail 'the full disk has changed what is shown'
-  umount "$folder/disk"
+  leave 1
+  night "$disk/library" && fail 'a second night on a full disk succeeded'
+  same "$disk/library" "$folder/reference" || fail 'the full disk has changed what is shown'
+  umount "$disk"
   trap tidy EXIT
 else
   echo 'skipped: the full disk (mounting a small file system needs root)'

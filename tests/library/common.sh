@@ -55,24 +55,20 @@ night() {
 # key JOB: of the plan as things are now
 key() {
   "$program" nightly --spec "$folder/spec.json" --out "$library" --plan |
-    sed -n "s/^\([0-9a-f]*\)  $1  <-.*/\1/p"
+    sed -n "s|^\([0-9a-f]*\)  $1  <-.*|\1|p"
 }
 
 # product JOB FILE: where it is kept
 product() { echo "$library"/store/*/"$(key "$1")/$2"; }
 
-# whole LIBRARY: is what the link shows complete and unharmed at this moment?
-whole() {
-  shown=$(readlink -f "$1/current") || return 0
-  [ -d "$shown" ] || return 0
-  (cd "$shown" && sha256sum --quiet -c SHA256SUMS >/dev/null 2>&1)
-}
+# whole LIBRARY: is what the link shows there, complete and unharmed at this moment?
+whole() { (cd -P "$1/current" && sha256sum --quiet -c SHA256SUMS) >/dev/null 2>&1; }
 
 # same A B: do two libraries show the same bytes? (manifests carry the name of their night)
 same() {
   grep -v ' manifest.json$' "$1/current/SHA256SUMS" >"$folder/a.sums"
   grep -v ' manifest.json$' "$2/current/SHA256SUMS" >"$folder/b.sums"
-  cmp -s "$folder/a.sums" "$folder/b.sums" && whole "$1" && whole "$2"
+  [ -s "$folder/a.sums" ] && cmp -s "$folder/a.sums" "$folder/b.sums" && whole "$1" && whole "$2"
 }
 
 finish() {

@@ -77,11 +77,15 @@ END
 export SLURM_CONF=$slurm/slurm.conf
 slurmctld -D >"$slurm/ctld.out" 2>&1 &
 pids="$pids $!"
-for node in n1 n2; do
-  slurmd -D -N $node >"$slurm/$node.out" 2>&1 &
-  eval "$node=\$!"
+# A node has processes of its own, so that all of it is gone at once.
+start() {
+  unshare --pid --fork --kill-child --mount-proc slurmd -D -N "$1" >>"$slurm/$1.out" 2>&1 &
   pids="$pids $!"
+}
+for node in n1 n2; do
+  start $node
 done
+lost_node=$!
 for _ in $(seq 60); do
   [ "$(sinfo --noheader --format=%D --states=idle 2>/dev/null)" = 2 ] && break
   sleep 0.5
@@ -104,18 +108,23 @@ wait_for() {
 library=$folder/library
 night "$library" --engine slurm &
 waiting=$!
-wait_for 'squeue --noheader --states=running --format=%i | grep -q _' || fail 'no task was started'
+# tasks NODE: running there
+tasks() { squeue --noheader --states=running --nodelist="$1" --format=%i | grep _ | head -1; }
+restarted() { scontrol show job "$1" | grep -q 'Restarts=1'; }
+wait_for '[ -n "$(tasks n1)" ] && [ -n "$(tasks n2)" ]' || fail 'no task on each node'
 "$program" nightly --spec "$folder/spec.json" --out "$library" --engine slurm 2>"$folder/second" &&
   fail 'a second night was let in'
 grep -q "another night is in Slurm's queue" "$folder/second" || fail "second: $(cat "$folder/second")"
-# One task back into the queue, then one node gone.
-task=$(squeue --noheader --states=running --format='%i %N' | grep _ | sed -n 's/ n1$//p' | head -1)
-[ -z "$task" ] || scontrol requeue "$task" || fail "task $task could not be requeued"
-kill -9 "$n2"
+# One task back into the queue, and one node gone with its task.
+wait_for '[ -n "$(tasks n1)" ] && [ -n "$(tasks n2)" ]' || fail 'no task on each node any more'
+task=$(tasks n1) lost=$(tasks n2)
+kill -9 "$lost_node"
+scontrol requeue "$task" || fail "task $task could not be requeued"
+restarted "$task" || fail "task $task was not requeued"
 wait_for 'sinfo --noheader --format=%T --nodes=n2 | grep -q down' || fail 'the lost node was not noticed'
+restarted "$lost" || fail "task $lost of the lost node was not started again"
 # It comes back, as after a repair.
-slurmd -D -N n2 >>"$slurm/n2.out" 2>&1 &
-pids="$pids $!"
+start n2
 wait "$waiting" || true
 # What the lost node left undone is done by the next night.
 [ "$(field outcome)" = published ] || {
