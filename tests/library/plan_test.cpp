@@ -139,10 +139,12 @@ TEST_F(PlanTest, ALongJobHoldsUpNoOther) {
     if (j.job.name == "simulate c04-s1-thin") waiting = j.job.key;
   }
   const fs::path list = folder / "list";
-  const fs::path fake = write("fake", fmt::format("#!/bin/sh\necho start $2 >>'{0}'\n"
-                                                  "[ $2 != {1} ] || sleep 3\n"
-                                                  "echo end $2 >>'{0}'\n",
-                                                  list.string(), slow));
+  // The slow one ends as soon as the other has begun, or after a minute.
+  const fs::path fake = write(
+      "fake", fmt::format("#!/bin/sh\necho start $2 >>'{0}'\nif [ $2 = {1} ]; then\n"
+                          "  timeout 60 sh -c 'until grep -q \"start {2}\" \"{0}\"; do sleep 0.1; "
+                          "done'\nfi\necho end $2 >>'{0}'\n",
+                          list.string(), slow, waiting));
   fs::permissions(fake, fs::perms::owner_all);
   const fs::path file = write("build.ninja", ninjaText(p, *root, fake.string()));
   const auto code = runChild({"ninja", "-f", file.string(), "-k", "0", "-j", "2"}, [](auto&) {});
