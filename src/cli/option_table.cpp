@@ -136,6 +136,10 @@ Result<void> applyVerifyOut(const Words& words, RunOptions& options) {
   options.verify.out = words[0];
   return {};
 }
+Result<void> applyDrawBench(const Words&, RunOptions& options) {
+  options.bench = true;
+  return {};
+}
 Result<void> applyBench(const Words&, RunOptions& options) {
   options.verify.bench = true;
   return {};
@@ -278,6 +282,7 @@ constexpr OptionRow kOptions[] = {
      0, false, applyText<&RunOptions::checkpoint>},
     {"history", "RUN.h5", "History file to read", kMeasure | kDraw | kExport,
      kMeasure | kDraw | kExport, false, applyText<&RunOptions::history>},
+    {"--bench", "", "Print what a frame costs instead of filming", kDraw, 0, false, applyDrawBench},
     {"input", "DIR|FILE", "Meshes: a folder or one file", kImport, kImport, false,
      applyText<&RunOptions::input>},
     {"topic", "components|scores|views|presets|boluses|scenes", "What to list", kList, kList, false,

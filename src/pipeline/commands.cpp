@@ -9,6 +9,7 @@
 #include "pipeline/compare.h"
 #include "pipeline/components.h"
 #include "pipeline/confirm.h"
+#include "pipeline/draw_bench.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/simulation.h"
@@ -105,6 +106,7 @@ Result<void> draw(const RunOptions& o, Progress& progress) {
   if (!preset) return std::unexpected(preset.error());
   auto history = frame::loadHistory(o.history);
   if (!history) return std::unexpected(history.error());
+  if (o.bench) return benchDrawing(o, *preset, *history, progress);
   return publish(o, *preset, *history, 0, progress);
 }
 

@@ -18,6 +18,7 @@ struct Renderer::Impl {
   FluoroPass fluoro;
   PlainPass plain;
   Prepared prepared;
+  int triangles = 0;
 };
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -28,6 +29,9 @@ Renderer::~Renderer() {
 }
 const RenderPreset& Renderer::preset() const {
   return impl_->preset;
+}
+int Renderer::trianglesDrawn() const {
+  return impl_->triangles;
 }
 std::string Renderer::description() const {
   return impl_->context->description();
@@ -106,6 +110,7 @@ Result<Renderer::Scene> Renderer::prepareScene(const frame::History& history, in
     impl_->prepared = prepare(history, preset.creaseAngle_rad);
   Scene s{
       &found->second, buildDrawList(history, frame, impl_->prepared, preset, found->second), {}};
+  impl_->triangles = static_cast<int>(s.list.indices.size() / 3);
   s.camera = makeCamera(found->second, preset.width, preset.height, s.list.bounds);
   return s;
 }

@@ -47,6 +47,7 @@ class Renderer {
   /// What a view promises (ViewDef::shows) and does not keep at a frame.
   Result<std::vector<Loss>> lost(const frame::History& history, int frame, const std::string& view);
 
+  int trianglesDrawn() const;  ///< of meshes and sections, when last asked for a picture
   const RenderPreset& preset() const;
   std::string description() const;  ///< driver and version
 
