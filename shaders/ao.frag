@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Screen-space ambient occlusion at half size: taps on a spiral, turned by a fixed 4 x 4 pixel
+// Screen-space ambient occlusion at a share of the size: taps on a spiral, turned by a fixed 4 x 4 pixel
 // pattern (static, so nothing flickers; blur.frag removes the pattern).
 // uDepth         sampler2D  depth 0..1, full size
 // uNearFar       vec3  near, far (m), 1 = perspective / 0 = orthographic
 // uTanHalf       vec2  half picture at depth 1 m (perspective) or half picture in m (orthographic)
 // uSize          vec2  full size in pixels
+// uShare         int   full pixels to one of these, along each axis
 // uRadius        float metres
 // uPixelsPerMetre vec2 x: scale at depth 1 m (perspective), y: constant (orthographic)
 // uTaps          int   4..32
@@ -15,7 +16,7 @@ layout(binding = 0) uniform sampler2D uDepth;
 uniform vec3 uNearFar;
 uniform vec2 uTanHalf, uSize, uPixelsPerMetre;
 uniform float uRadius;
-uniform int uTaps;
+uniform int uTaps, uShare;
 uniform vec2 uSpiral[32];
 layout(location = 0) out vec2 oLightDepth;  // occlusion, linear depth (m)
 
@@ -35,7 +36,7 @@ vec3 at(vec2 pixel) {
 }
 
 void main() {
-  vec2 p = 2.0 * floor(gl_FragCoord.xy);
+  vec2 p = float(uShare) * floor(gl_FragCoord.xy) + float(uShare / 2);
   oLightDepth = vec2(1.0, 1e3);
   if (texelFetch(uDepth, ivec2(p), 0).r >= 1.0) return;
   vec3 c = at(p);

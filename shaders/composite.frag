@@ -1,41 +1,37 @@
 // SPDX-License-Identifier: MIT
-// Occlusion, background, sRGB.
-// uColour        sampler2D  square root of linear, premultiplied
-// uLightDepth    sampler2D  half size: occlusion 0 dark .. 1 open, linear depth (m)
+// The picture darkened by occlusion; drawn where there is something nearer than the background.
+// Output as the input: square root of linear, and which structure is seen.
+// uColour        sampler2D  square root of linear
+// uLightDepth    sampler2D  a share of the size: occlusion 0 dark .. 1 open, linear depth (m)
 // uDepth         sampler2D  depth 0..1
 // uNearFar       vec3  near, far (m), 1 = perspective / 0 = orthographic
+// uShare         int   pixels to one of uLightDepth, along each axis
 // uRange         float metres beyond which another depth's occlusion does not count
 // uAoStrength    float 0..1
-// uTop, uBottom  vec3  background, sRGB
 #version 450 core
-in vec2 vUv;
 layout(binding = 0) uniform sampler2D uColour;
 layout(binding = 1) uniform sampler2D uLightDepth;
 layout(binding = 2) uniform sampler2D uDepth;
 uniform vec3 uNearFar;
+uniform int uShare;
 uniform float uAoStrength, uRange;
-uniform vec3 uTop, uBottom;
 layout(location = 0) out vec4 oColour;
-
-vec3 toSrgb(vec3 c) {  // IEC 61966-2-1
-  return mix(12.92 * c, 1.055 * pow(max(c, 1e-6), vec3(1.0 / 2.4)) - 0.055,
-             greaterThan(c, vec3(0.0031308)));
-}
 
 // Enlarges the occlusion: bilinear weights, less for texels at another depth.
 float occlusion(ivec2 p) {
   float d = texelFetch(uDepth, p, 0).r, n = uNearFar.x, f = uNearFar.y;
-  if (d >= 1.0) return 1.0;
   float z = uNearFar.z > 0.5 ? n * f / (f - d * (f - n)) : mix(n, f, d);
   ivec2 last = textureSize(uLightDepth, 0) - 1;
-  ivec2 q = p / 2, side = p & 1;
+  vec2 g = (vec2(p - uShare / 2)) / float(uShare);
+  ivec2 q = ivec2(floor(g));
+  vec2 s = g - vec2(q);
   float sum = 0.0, weight = 0.0;
   for (int k = 0; k < 4; ++k) {
     ivec2 o = ivec2(k & 1, k >> 1);
-    vec2 s = texelFetch(uLightDepth, min(q + o, last), 0).rg;
-    vec2 share = mix(vec2(1 - o), vec2(0.5), vec2(side));
-    float w = share.x * share.y * (max(1.0 - abs(s.g - z) / uRange, 0.0) + 1e-3);
-    sum += w * s.r;
+    vec2 t = texelFetch(uLightDepth, clamp(q + o, ivec2(0), last), 0).rg;
+    vec2 share = mix(1.0 - s, s, vec2(o));
+    float w = share.x * share.y * max(1.0 - abs(t.g - z) / uRange, 0.0) + 1e-4;
+    sum += w * t.r;
     weight += w;
   }
   return sum / weight;
@@ -44,18 +40,11 @@ float occlusion(ivec2 p) {
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   vec4 c = texelFetch(uColour, p, 0);
-  float ao = uAoStrength > 0.0 ? mix(1.0, occlusion(p), uAoStrength) : 1.0;
-  vec3 sky = mix(uBottom, uTop, smoothstep(0.0, 1.0, vUv.y));
-  // half a level of fixed ordered noise hides the bands of the dark background
-  sky += (float((p.x * 5 + p.y * 3) & 7) / 8.0 - 0.4375) / 255.0;
-  if (c.a <= 0.0) {
-    oColour = vec4(sky, 1.0);
-    return;
-  }
-  vec3 colour = c.rgb / c.a;
-  colour *= colour;
-  // light that bounces between tissue walls keeps their colour: dark creases stay warm
-  vec3 hue = colour / max(max(colour.r, colour.g), max(colour.b, 1e-4));
-  colour *= pow(vec3(ao), 1.35 - 0.6 * hue);
-  oColour = vec4(mix(sky, toSrgb(clamp(colour, 0.0, 1.0)), c.a), 1.0);
+  float ao = mix(1.0, occlusion(p), uAoStrength);
+  // light that bounces between tissue walls keeps their colour: dark creases stay warm; of the
+  // linear light ao^1.35 is left of the weakest colour, ao^0.75 of the strongest
+  vec3 linear = c.rgb * c.rgb;
+  vec3 hue = linear / max(max(linear.r, linear.g), max(linear.b, 1e-4));
+  float half_ = sqrt(ao), quarter = sqrt(half_), eighth = sqrt(quarter);
+  oColour = vec4(c.rgb * mix(vec3(half_ * eighth * sqrt(eighth)), vec3(quarter * eighth), hue), c.a);
 }

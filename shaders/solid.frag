@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Surface shading in linear light: diffuse that wraps round translucent tissue, a GGX lobe, a thin
 // water coat with a soft-box reflection, and a filtered key shadow. Output: highlights compressed,
-// square root of the linear colour (so that 8 bits suffice), premultiplied.
+// square root of the linear colour (so that 8 bits suffice). DETAIL: with mottle and relief.
 // uBase, uSpecular(0..1), uRoughness(0.05..1), uTranslucency, uWetness, uMottle (0..1)
 // uRelief        float 0..1, height of bumps fixed to the tissue; uReliefSize metres between them
 // uOpacity       float 0..1; below 1 grazing rays are more opaque, as in glass
-// uSection       int   1 = capped cut: the same light whatever its angle, shadowed
-// uUnlit         int   1 = uBase as it is (outlines)
+// uId            float alpha of what is opaque: which structure is seen, n / 255
 // uExposure      float
 // uToneMap       int   1 = soft shoulder above 0.7, 0 = clamp
 // uEye           vec4  w = 1: eye position (m); w = 0: direction towards the eye
@@ -21,9 +20,9 @@ in vec3 vPosition;
 in vec3 vNormal;
 in vec3 vRest;
 uniform vec3 uBase;
-uniform float uSpecular, uRoughness, uTranslucency, uWetness, uMottle, uOpacity;
+uniform float uSpecular, uRoughness, uTranslucency, uWetness, uMottle, uOpacity, uId;
 uniform float uRelief, uReliefSize;
-uniform int uSection, uUnlit, uToneMap;
+uniform int uToneMap;
 uniform float uExposure;
 uniform vec4 uEye;
 uniform vec3 uUp, uKeyDir, uKey, uFillDir, uFill, uAmbientTop, uAmbientBottom;
@@ -32,11 +31,9 @@ uniform float uShadowStrength, uShadowRadius, uShadowBias;
 layout(binding = 0) uniform sampler2DShadow uShadow;
 layout(location = 0) out vec4 oColour;
 
-// Vogel disc: point i at radius sqrt((i + 0.5) / 9), turned by the golden angle.
-const vec2 kDisc[9] = vec2[](
-    vec2(0.2357, 0.0000), vec2(-0.3010, 0.2758), vec2(0.0461, -0.5250),
-    vec2(0.3794, 0.4949), vec2(-0.6963, -0.1232), vec2(0.6596, -0.4196),
-    vec2(-0.2206, 0.8207), vec2(-0.4208, -0.8101), vec2(0.9129, 0.3334));
+// A middle and a turned square; the comparison sampler smooths each tap.
+const vec2 kDisc[5] = vec2[](vec2(0.0), vec2(0.73, 0.24), vec2(-0.24, 0.73),
+                             vec2(-0.73, -0.24), vec2(0.24, -0.73));
 
 float hash(ivec3 c) {  // integer hash: the same on every machine
   uint h = uint(c.x) * 73856093u ^ uint(c.y) * 19349663u ^ uint(c.z) * 83492791u;
@@ -61,12 +58,10 @@ vec4 noise(vec3 p) {
 }
 
 float shadow(vec3 n) {
-  if (uShadowStrength <= 0.0) return 1.0;
   vec3 p = (uShadowProj * vec4(vPosition + n * uShadowBias, 1.0)).xyz;
   float lit = 0.0;
-  for (int i = 0; i < 9; ++i)  // the comparison sampler smooths each tap
-    lit += texture(uShadow, vec3(p.xy + uShadowRadius * kDisc[i], p.z));
-  return mix(1.0, lit / 9.0, uShadowStrength);
+  for (int i = 0; i < 5; ++i) lit += texture(uShadow, vec3(p.xy + uShadowRadius * kDisc[i], p.z));
+  return mix(1.0, lit / 5.0, uShadowStrength);
 }
 
 // GGX distribution with Smith's height-correlated visibility, times pi.
@@ -102,42 +97,33 @@ vec3 room(vec3 r) {
   return mix(uAmbientBottom, uAmbientTop, smoothstep(-0.6, 0.8, up)) + 0.9 * box * uKey;
 }
 
-vec4 encoded(vec3 c, float opacity) {
+vec4 encoded(vec3 c, float alpha) {
   c *= uExposure;
   const float knee = 0.7;  // identity below, then towards 1 without a corner
   vec3 over = max(c - knee, 0.0) / (1.0 - knee);
   if (uToneMap == 1) c = min(c, vec3(knee)) + (1.0 - knee) * over / (1.0 + over);
-  return vec4(sqrt(clamp(c, 0.0, 1.0)), 1.0) * opacity;
+  return vec4(sqrt(clamp(c, 0.0, 1.0)), alpha);
 }
 
 void main() {
-  if (uUnlit == 1) {
-    oColour = encoded(uBase, uOpacity);
-    return;
-  }
   vec3 v = normalize(uEye.xyz - uEye.w * vPosition);
   vec3 n = normalize(vNormal);
-  if (dot(n, v) < 0.0 && (uSection == 1 || !gl_FrontFacing)) n = -n;
+  if (dot(n, v) < 0.0 && !gl_FrontFacing) n = -n;
   vec3 base = uBase;
   vec3 flatN = n;
-  if (uMottle > 0.0 || uRelief > 0.0) {
-    // bumps smaller than a pixel would flicker: they fade first
-    float footprint = length(fwidth(vRest)) / uReliefSize;
-    float seen = clamp(1.6 - 1.6 * footprint, 0.0, 1.0);
-    vec4 fine = noise(vRest / uReliefSize), coarse = noise(vRest * 190.0);
-    base *= 1.0 + uMottle * (0.55 * (coarse.x - 0.5) + 0.35 * seen * (fine.x - 0.5));
-    vec3 g = fine.yzw;  // rest axes: tissue turns little, so the slope is used as it is
-    n = normalize(n - 0.35 * seen * uRelief * (g - dot(g, n) * n));
-    base *= 1.0 + 0.25 * seen * uRelief * (fine.x - 0.6);  // hollows are darker
-  }
+#ifdef DETAIL
+  // bumps smaller than a pixel would flicker: they fade first
+  float footprint = length(fwidth(vRest)) / uReliefSize;
+  float seen = clamp(1.6 - 1.6 * footprint, 0.0, 1.0);
+  vec4 fine = noise(vRest / uReliefSize), coarse = noise(vRest * 190.0);
+  base *= 1.0 + uMottle * (0.55 * (coarse.x - 0.5) + 0.35 * seen * (fine.x - 0.5));
+  vec3 g = fine.yzw;  // rest axes: tissue turns little, so the slope is used as it is
+  n = normalize(n - 0.35 * seen * uRelief * (g - dot(g, n) * n));
+  base *= 1.0 + 0.25 * seen * uRelief * (fine.x - 0.6);  // hollows are darker
+#endif
   float lit = shadow(flatN);
   float up = 0.5 + 0.5 * dot(n, uUp);
   vec3 colour = base * mix(uAmbientBottom, uAmbientTop, up);
-  if (uSection == 1) {  // sections are read as diagrams: the same light at any angle of the cut
-    vec3 light = 0.5 * (uAmbientTop + uAmbientBottom) + 0.5 * lit * uKey + 0.3 * uFill;
-    oColour = encoded(base * light, uOpacity);
-    return;
-  }
   colour += lit * directional(base, n, v, uKeyDir, uKey);
   colour += directional(base, n, v, uFillDir, uFill);
   float nv = max(dot(n, v), 0.0);
@@ -145,7 +131,6 @@ void main() {
   float mirror = uWetness * fresnel(0.02, graze) + 0.5 * (1.0 - uRoughness) *
                  fresnel(0.08 * uSpecular, graze);
   colour += mix(0.35, 1.0, lit) * mirror * room(reflect(-v, n));
-  float opacity = uOpacity;
-  if (opacity < 1.0) opacity = clamp(opacity * (0.55 + 1.3 * (1.0 - nv) * (1.0 - nv)), 0.0, 1.0);
-  oColour = encoded(colour, opacity);
+  float glass = clamp(uOpacity * (0.55 + 1.3 * (1.0 - nv) * (1.0 - nv)), 0.0, 1.0);
+  oColour = encoded(colour, uOpacity < 1.0 ? glass : uId);
 }

@@ -33,6 +33,7 @@ Corners cornersOf(std::span<const Triangle> triangles, std::size_t vertices) {
 DrawMesh buildDrawMesh(std::span<const Triangle> triangles, std::span<const Vec3f> positions,
                        double creaseAngle_rad) {
   DrawMesh mesh;
+  mesh.triangles.assign(triangles.begin(), triangles.end());
   mesh.rest.assign(positions.begin(), positions.end());
   mesh.indices.resize(triangles.size() * 3);
   std::vector<Vec3f> normal(triangles.size());

@@ -16,6 +16,7 @@ struct Vertex {
 };
 
 struct DrawMesh {
+  std::vector<Triangle> triangles;     ///< of structure vertices
   std::vector<std::uint32_t> indices;  ///< 3 per triangle, into `source`
   std::vector<int> source;             ///< draw vertex -> structure vertex
   std::vector<Vec3f> rest;             ///< [structure vertex], first frame

@@ -17,10 +17,6 @@ float scale(const Camera& camera, const Bounds& scene) {
 }
 }  // namespace
 
-FluoroPass::~FluoroPass() {
-  if (emptyArray_) glDeleteVertexArrays(1, &emptyArray_);
-}
-
 Result<void> FluoroPass::create(const std::filesystem::path& dir, const RenderPreset& preset) {
   const struct {
     Program& program;
@@ -38,16 +34,14 @@ Result<void> FluoroPass::create(const std::filesystem::path& dir, const RenderPr
   const int w = preset.width, h = preset.height;
   const int sw = (w + kScatterShare - 1) / kScatterShare;
   const int sh = (h + kScatterShare - 1) / kScatterShare;
-  const Result<void> made[] = {depth_.create("fluoroscopy", w, h, 1, GL_R32F, 0),
-                               scatterA_.create("scatter", sw, sh, 1, GL_RG32F, 0),
-                               scatterB_.create("scatter", sw, sh, 1, GL_RG32F, 0),
-                               signalA_.create("detector", w, h, 1, GL_R32F, 0),
-                               signalB_.create("detector", w, h, 1, GL_R32F, 0),
-                               picture_.create("fluoroscopy picture", w, h, 1, GL_RGBA8, 0)};
+  const Result<void> made[] = {depth_.create("fluoroscopy", w, h, GL_R32F, 0),
+                               scatterA_.create("scatter", sw, sh, GL_RG32F, 0),
+                               scatterB_.create("scatter", sw, sh, GL_RG32F, 0),
+                               signalA_.create("detector", w, h, GL_R32F, 0),
+                               signalB_.create("detector", w, h, GL_R32F, 0),
+                               picture_.create("fluoroscopy picture", w, h, GL_RGBA8, 0)};
   for (const auto& m : made)
     if (!m) return m;
-  mesh_.create();
-  glGenVertexArrays(1, &emptyArray_);
   return {};
 }
 
@@ -65,13 +59,15 @@ Result<void> FluoroPass::drawDepth(const DrawList& list, const Camera& camera,
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   length_.use();
+  for (const char* clip : {"uClip[0]", "uClip[1]", "uClip[2]"})
+    length_.set(clip, Eigen::Vector4f(0, 0, 0, 1));
   length_.set("uViewProj", camera.viewProjection);
   length_.set("uEye", camera.eye);
   length_.set("uOrigin", 0.5f * (camera.near_m + camera.far_m) * camera.eye.w());
   const auto add = [&](const DrawItem& item, double attenuation_per_m, double layer) {
     length_.set("uAttenuation", static_cast<float>(attenuation_per_m));
     length_.set("uLayer", static_cast<float>(layer));
-    mesh_.draw(item.mesh);
+    mesh_->draw(item);
   };
   for (const auto* items : {&list.solid, &list.ghost})
     for (const DrawItem& item : *items) {
@@ -98,8 +94,7 @@ Result<void> FluoroPass::drawDepth(const DrawList& list, const Camera& camera,
 
 void FluoroPass::cover(const Target& to) {
   to.bind();
-  glBindVertexArray(emptyArray_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  mesh_->drawScreen();
 }
 
 void FluoroPass::blur(const Target& from, const Target& by, const Target& to, float sigma_px) {
@@ -116,7 +111,6 @@ void FluoroPass::blur(const Target& from, const Target& by, const Target& to, fl
 Result<const Target*> FluoroPass::drawSignal(const DrawList& list, const Camera& camera,
                                              const RenderPreset& preset, int frame) {
   const FluoroDef& def = preset.fluoro;
-  mesh_.upload(list.vertices, list.indices);
   if (auto ok = drawDepth(list, camera, preset); !ok) return std::unexpected(ok.error());
   const float px_m = scale(camera, list.bounds);
   depth_.colour().bind(0);
@@ -143,8 +137,9 @@ Result<const Target*> FluoroPass::drawSignal(const DrawList& list, const Camera&
   return &signalA_;
 }
 
-Result<Image> FluoroPass::draw(const DrawList& list, const Camera& camera,
+Result<Image> FluoroPass::draw(const GpuMesh& mesh, const DrawList& list, const Camera& camera,
                                const RenderPreset& preset, int frame) {
+  mesh_ = &mesh;
   const auto signal = drawSignal(list, camera, preset, frame);
   if (!signal) return std::unexpected(signal.error());
   display_.use();
@@ -174,8 +169,9 @@ std::vector<float> FluoroPass::read(const Target& from) const {
   return values;
 }
 
-Result<FloatImage> FluoroPass::signal(const DrawList& list, const Camera& camera,
-                                      const RenderPreset& preset, int frame) {
+Result<FloatImage> FluoroPass::signal(const GpuMesh& mesh, const DrawList& list,
+                                      const Camera& camera, const RenderPreset& preset, int frame) {
+  mesh_ = &mesh;
   const auto signal = drawSignal(list, camera, preset, frame);
   if (!signal) return std::unexpected(signal.error());
   FloatImage image{preset.width, preset.height, read(**signal)};
@@ -183,11 +179,12 @@ Result<FloatImage> FluoroPass::signal(const DrawList& list, const Camera& camera
   return image;
 }
 
-Result<std::map<std::string, int>> FluoroPass::visiblePixels(const DrawList& list,
+Result<std::map<std::string, int>> FluoroPass::visiblePixels(const GpuMesh& mesh,
+                                                             const DrawList& list,
                                                              const Camera& camera,
                                                              const RenderPreset& preset) {
+  mesh_ = &mesh;
   constexpr float kContrast = 0.05f;  // optical depth that shows above the noise; assumed 0.03..0.1
-  mesh_.upload(list.vertices, list.indices);
   const float half_px = 0.5f * scale(camera, list.bounds);
   const float halfWidth = half_px * preset.fluoro.fieldWidth_m;
   const float halfHeight = half_px * preset.fluoro.fieldHeight_m;

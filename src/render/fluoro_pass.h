@@ -18,20 +18,16 @@ class FluoroPass {
  public:
   Result<void> create(const std::filesystem::path& shaderDir, const RenderPreset& preset);
   /// `frame` keys the quantum noise.
-  Result<Image> draw(const DrawList& list, const Camera& camera, const RenderPreset& preset,
-                     int frame);
+  Result<Image> draw(const GpuMesh& mesh, const DrawList& list, const Camera& camera,
+                     const RenderPreset& preset, int frame);
   /// The detector's signal relative to the open field, before the screen, for measuring.
-  Result<FloatImage> signal(const DrawList& list, const Camera& camera, const RenderPreset& preset,
-                            int frame);
+  Result<FloatImage> signal(const GpuMesh& mesh, const DrawList& list, const Camera& camera,
+                            const RenderPreset& preset, int frame);
 
   /// Pixels in which a structure adds contrast, by itself and within the blades.
-  Result<std::map<std::string, int>> visiblePixels(const DrawList& list, const Camera& camera,
+  Result<std::map<std::string, int>> visiblePixels(const GpuMesh& mesh, const DrawList& list,
+                                                   const Camera& camera,
                                                    const RenderPreset& preset);
-
-  FluoroPass() = default;
-  ~FluoroPass();
-  FluoroPass(const FluoroPass&) = delete;
-  FluoroPass& operator=(const FluoroPass&) = delete;
 
  private:
   /// All of the scene, or (when `only` is not empty) one structure.
@@ -45,7 +41,6 @@ class FluoroPass {
 
   Program length_, scatter_, blur_, detector_, display_;
   Target depth_, scatterA_, scatterB_, signalA_, signalB_, picture_;
-  GpuMesh mesh_;
-  GLuint emptyArray_ = 0;
+  const GpuMesh* mesh_ = nullptr;  ///< what is being drawn
 };
 }  // namespace swallowclip::render

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render/gl.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "core/file.h"
@@ -26,9 +27,16 @@ std::string lineOf(const std::string& log) {
   return line.find_first_not_of("0123456789", 1) == std::string::npos ? line : "";
 }
 
-Result<GLuint> compile(const std::filesystem::path& file, GLenum stage) {
-  const auto source = readFile(file);
+Result<GLuint> compile(const std::filesystem::path& file, GLenum stage,
+                       const std::string& define = "") {
+  auto source = readFile(file);
   if (!source) return std::unexpected(source.error());
+  const std::size_t version = source->find("#version");
+  if (const std::size_t end = source->find('\n', version);
+      !define.empty() && version != std::string::npos && end != std::string::npos) {
+    const auto line = 2 + std::count(source->begin(), source->begin() + static_cast<std::ptrdiff_t>(end), '\n');
+    source->insert(end + 1, fmt::format("#define {}\n#line {}\n", define, line));
+  }
   const GLuint id = glCreateShader(stage);
   const char* text = source->c_str();
   glShaderSource(id, 1, &text, nullptr);
@@ -44,10 +52,10 @@ Result<GLuint> compile(const std::filesystem::path& file, GLenum stage) {
 }  // namespace
 
 Result<Program> Program::load(const std::filesystem::path& dir, const std::string& vertex,
-                              const std::string& fragment) {
+                              const std::string& fragment, const std::string& define) {
   const auto v = compile(dir / vertex, GL_VERTEX_SHADER);
   if (!v) return std::unexpected(v.error());
-  const auto f = compile(dir / fragment, GL_FRAGMENT_SHADER);
+  const auto f = compile(dir / fragment, GL_FRAGMENT_SHADER, define);
   if (!f) {
     glDeleteShader(*v);
     return std::unexpected(f.error());
@@ -78,14 +86,9 @@ int Program::at(const char* name) {
   return locations_[name] = glGetUniformLocation(id_, name);
 }
 
-void Texture::create(GLenum format, int width, int height, int samples, GLenum filter) {
+void Texture::create(GLenum format, int width, int height, GLenum filter) {
   reset();
   glGenTextures(1, &id_);
-  if (samples > 1) {
-    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, id_);
-    glTexStorage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples, format, width, height, GL_TRUE);
-    return;
-  }
   glBindTexture(GL_TEXTURE_2D, id_);
   glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
@@ -103,21 +106,21 @@ Target::~Target() {
   if (id_) glDeleteFramebuffers(1, &id_);
 }
 
-Result<void> Target::create(const char* what, int width, int height, int samples,
-                            GLenum colourFormat, GLenum depthFormat) {
+Result<void> Target::create(const char* what, int width, int height, GLenum colourFormat,
+                            GLenum depthFormat) {
   width_ = width;
   height_ = height;
   glGenFramebuffers(1, &id_);
   glBindFramebuffer(GL_FRAMEBUFFER, id_);
   if (colourFormat) {
-    colour_.create(colourFormat, width, height, samples, GL_LINEAR);
+    colour_.create(colourFormat, width, height, GL_LINEAR);
     glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, colour_.id(), 0);
   } else {
     glDrawBuffer(GL_NONE);
     glReadBuffer(GL_NONE);
   }
   if (depthFormat) {
-    depth_.create(depthFormat, width, height, samples, GL_NEAREST);
+    depth_.create(depthFormat, width, height, GL_NEAREST);
     const bool stencil = depthFormat == GL_DEPTH24_STENCIL8 || depthFormat == GL_DEPTH32F_STENCIL8;
     glFramebufferTexture(GL_FRAMEBUFFER,
                          stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth_.id(),
@@ -125,15 +128,14 @@ Result<void> Target::create(const char* what, int width, int height, int samples
   }
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     return failure(what,
-                   fmt::format("no framebuffer of {} x {} with {} samples", width, height, samples),
-                   "Choose a smaller size or fewer samples in the preset.");
+                   fmt::format("no framebuffer of {} x {}", width, height),
+                   "Choose a smaller size in the preset.");
   return {};
 }
 
-void Target::resolveTo(const Target& to, GLbitfield what) const {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, id_);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.id_);
-  glBlitFramebuffer(0, 0, width_, height_, 0, 0, to.width_, to.height_, what, GL_NEAREST);
+void Target::testAgainst(const Target& other) {
+  glBindFramebuffer(GL_FRAMEBUFFER, id_);
+  glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, other.depth_.id(), 0);
 }
 
 void Target::bind() const {

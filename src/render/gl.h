@@ -26,9 +26,9 @@ using Mat4f = Eigen::Matrix4f;
 class Program {
  public:
   Program() = default;
-  /// Links `vertex` and `fragment` files of the folder.
+  /// Links `vertex` and `fragment` files of the folder; `define`, if any, is defined in the latter.
   static Result<Program> load(const std::filesystem::path& shaderDir, const std::string& vertex,
-                              const std::string& fragment);
+                              const std::string& fragment, const std::string& define = "");
   ~Program();
   Program(Program&& b) noexcept { swap(b); }
   Program& operator=(Program&& b) noexcept {
@@ -72,9 +72,9 @@ class Texture {
   Texture(const Texture&) = delete;
   Texture& operator=(const Texture&) = delete;
 
-  /// Immutable storage; samples > 1 makes a multisample texture.
-  void create(GLenum format, int width, int height, int samples, GLenum filter);
-  void bind(int unit) const;  ///< single-sample textures only
+  /// Immutable storage.
+  void create(GLenum format, int width, int height, GLenum filter);
+  void bind(int unit) const;
   GLuint id() const { return id_; }
 
  private:
@@ -94,11 +94,11 @@ class Target {
   Target& operator=(const Target&) = delete;
 
   /// A format of 0 leaves that attachment out.
-  Result<void> create(const char* what, int width, int height, int samples, GLenum colourFormat,
+  Result<void> create(const char* what, int width, int height, GLenum colourFormat,
                       GLenum depthFormat);
+  /// Depth of another target of the same size, to be tested and not written.
+  void testAgainst(const Target& other);
   void bind() const;
-  /// Copies colour or depth, averaging or choosing samples; leaves both framebuffers bound.
-  void resolveTo(const Target& to, GLbitfield what) const;
   const Texture& colour() const { return colour_; }
   const Texture& depth() const { return depth_; }
   int width() const { return width_; }

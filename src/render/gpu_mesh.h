@@ -7,7 +7,7 @@
 
 namespace swallowclip::render {
 
-/// Vertex and index buffers filled anew for each frame.
+/// A frame's vertices, uploaded once, and what one view at a time draws of them.
 class GpuMesh {
  public:
   GpuMesh() = default;
@@ -15,11 +15,18 @@ class GpuMesh {
   GpuMesh(const GpuMesh&) = delete;
   GpuMesh& operator=(const GpuMesh&) = delete;
   void create();
-  void upload(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
+  void uploadFrame(const std::vector<Vertex>& vertices);
+  void uploadView(const DrawList& list);
   void draw(const Range& range) const;
+  void draw(const Soup& soup) const;
+  /// Its mesh, or its skin.
+  void draw(const DrawItem& item) const;
+  /// One triangle over the whole picture, for shaders/screen.vert.
+  void drawScreen() const;
 
  private:
-  GLuint array_ = 0, vertices_ = 0, indices_ = 0;
+  GLuint frame_ = 0, extra_ = 0, screen_ = 0;  // vertex arrays
+  GLuint buffers_[3] = {};                     // the frame's vertices, indices, extra vertices
 };
 
 /// Reads the bound framebuffer, top row first.

@@ -11,11 +11,10 @@ namespace swallowclip::render {
 class PlainPass {
  public:
   Result<void> create(const std::filesystem::path& shaderDir, const RenderPreset& preset);
-  Result<Image> draw(const DrawList& list, const Camera& camera);
+  Result<Image> draw(const GpuMesh& mesh, const DrawList& list, const Camera& camera);
 
  private:
   Program program_;
   Target picture_;
-  GpuMesh mesh_;
 };
 }  // namespace swallowclip::render

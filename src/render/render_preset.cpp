@@ -42,7 +42,6 @@ std::string RenderPreset::validate() const {
   if (width < 16 || height < 16 || width > 8192 || height > 8192 || width % 2 || height % 2)
     return fmt::format("picture of {} x {}: both must be even and 16..8192", width, height);
   if (fps < 30) return fmt::format("{} frames/s: below 30 the pulse rate changes scores", fps);
-  if (msaa != 1 && msaa != 2 && msaa != 4) return fmt::format("msaa {} is not 1, 2 or 4", msaa);
   if (ao.taps < 4 || ao.taps > 32) return fmt::format("ao taps {} not in 4..32", ao.taps);
   if (light.shadowMap_px < 64 || light.shadowMap_px > 4096)
     return fmt::format("shadow map of {} px not in 64..4096", light.shadowMap_px);

@@ -126,7 +126,7 @@ struct RenderPreset {
   std::string name = "training";
   int width = 1280, height = 720;  ///< even (4:2:0 video)
   double fps = 30;                 ///< >= 30: pulse rate changes scores (Bonilha 2013)
-  int msaa = 4;                    ///< samples: 1, 2 or 4
+  bool smoothEdges = true;         ///< edges.h
   float exposure = 1.0f;
   bool toneMap = true;                ///< soft highlight shoulder; false = clamp
   float sectionOutline_m = 0.35e-3f;  ///< width of the line around caps, 0 = none

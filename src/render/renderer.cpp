@@ -17,8 +17,13 @@ struct Renderer::Impl {
   SurfacePass surface;
   FluoroPass fluoro;
   PlainPass plain;
+  GpuMesh mesh;
   Prepared prepared;
+  FrameGeometry geometry;
+  std::uint64_t geometryDigest = 0;  ///< of what `geometry` was made from; 0: of nothing yet
   int triangles = 0;
+
+  void update(const frame::History& history, int frame);
 };
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -51,6 +56,7 @@ Result<Renderer> Renderer::create(const std::filesystem::path& shaderDir, Render
     return std::unexpected(ok.error());
   if (auto ok = impl->plain.create(shaderDir, impl->preset); !ok)
     return std::unexpected(ok.error());
+  impl->mesh.create();
   return Renderer(std::move(impl));
 }
 
@@ -80,6 +86,17 @@ std::string unusable(const frame::History& h, int frame) {
 }
 }  // namespace
 
+// The views of one frame share its geometry.
+void Renderer::Impl::update(const frame::History& history, int frame) {
+  const std::uint64_t digest = frameDigest(history, frame);
+  if (digest == geometryDigest) return;
+  if (prepared.meshes.empty() || prepared.digest != topologyDigest(history))
+    prepared = prepare(history, preset);
+  geometry = frameGeometry(history, frame, prepared, preset);
+  mesh.uploadFrame(geometry.vertices);
+  geometryDigest = digest;
+}
+
 // One frame as triangles and a camera, with the context current.
 struct Renderer::Scene {
   const ViewDef* view;
@@ -106,11 +123,12 @@ Result<Renderer::Scene> Renderer::prepareScene(const frame::History& history, in
   if (auto wrong = unusable(history, frame); !wrong.empty())
     return failure("history", wrong, "Simulate again.");
   if (auto ok = impl_->context->makeCurrent(); !ok) return std::unexpected(ok.error());
-  if (impl_->prepared.meshes.empty() || impl_->prepared.digest != topologyDigest(history))
-    impl_->prepared = prepare(history, preset.creaseAngle_rad);
-  Scene s{
-      &found->second, buildDrawList(history, frame, impl_->prepared, preset, found->second), {}};
-  impl_->triangles = static_cast<int>(s.list.indices.size() / 3);
+  impl_->update(history, frame);
+  Scene s{&found->second,
+          buildDrawList(history, frame, impl_->geometry, preset, found->second), {}};
+  impl_->mesh.uploadView(s.list);
+  impl_->triangles =
+      static_cast<int>(s.list.indices.size() + s.list.extra.size()) / 3;
   s.camera = makeCamera(found->second, preset.width, preset.height, s.list.bounds);
   return s;
 }
@@ -121,8 +139,8 @@ Result<Image> Renderer::draw(const frame::History& history, int frame, const std
   if (!scene) return std::unexpected(scene.error());
   const RenderPreset& preset = impl_->preset;
   auto image = scene->view->style == Style::fluoro
-                   ? impl_->fluoro.draw(scene->list, scene->camera, preset, frame)
-                   : impl_->surface.draw(scene->list, scene->camera, preset);
+                   ? impl_->fluoro.draw(impl_->mesh, scene->list, scene->camera, preset, frame)
+                   : impl_->surface.draw(impl_->mesh, scene->list, scene->camera, preset);
   if (!image) return image;
   CaptionText words = caption;
   if (words.viewLabel.empty()) words.viewLabel = scene->view->captionTitle;
@@ -135,14 +153,14 @@ Result<Image> Renderer::drawPlain(const frame::History& history, int frame,
                                   const std::string& view) {
   auto scene = prepareScene(history, frame, view);
   if (!scene) return std::unexpected(scene.error());
-  return impl_->plain.draw(scene->list, scene->camera);
+  return impl_->plain.draw(impl_->mesh, scene->list, scene->camera);
 }
 
 Result<FloatImage> Renderer::signal(const frame::History& history, int frame,
                                     const std::string& view) {
   auto scene = prepareScene(history, frame, view);
   if (!scene) return std::unexpected(scene.error());
-  return impl_->fluoro.signal(scene->list, scene->camera, impl_->preset, frame);
+  return impl_->fluoro.signal(impl_->mesh, scene->list, scene->camera, impl_->preset, frame);
 }
 
 Result<std::map<std::string, int>> Renderer::visiblePixels(const frame::History& history, int frame,
@@ -150,8 +168,8 @@ Result<std::map<std::string, int>> Renderer::visiblePixels(const frame::History&
   auto scene = prepareScene(history, frame, view);
   if (!scene) return std::unexpected(scene.error());
   return scene->view->style == Style::fluoro
-             ? impl_->fluoro.visiblePixels(scene->list, scene->camera, impl_->preset)
-             : impl_->surface.visiblePixels(scene->list, scene->camera, impl_->preset);
+             ? impl_->fluoro.visiblePixels(impl_->mesh, scene->list, scene->camera, impl_->preset)
+             : impl_->surface.visiblePixels(impl_->mesh, scene->list, scene->camera, impl_->preset);
 }
 
 namespace {

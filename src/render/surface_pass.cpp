@@ -5,12 +5,15 @@
 #include <cmath>
 
 #include "render/colour_vision.h"
+#include "render/edges.h"
 
 namespace swallowclip::render {
 namespace {
 
+constexpr int kAoShare = 3;               // occlusion is smooth: one value for 3 x 3 pixels
 constexpr float kAoRange = 0.4f;          // depths this share of the radius apart are not mixed
 constexpr float kShadowBias_m = 0.8e-3f;  // about 3 texels of a 1024 map over 250 mm
+constexpr std::size_t kMostIds = 255;     // of 8 bits, 0 is the background
 
 void setClips(Program& p, const std::vector<CutPlane>& cuts, int without = -1) {
   static constexpr const char* kNames[] = {"uClip[0]", "uClip[1]", "uClip[2]"};
@@ -22,64 +25,81 @@ void setClips(Program& p, const std::vector<CutPlane>& cuts, int without = -1) {
   }
 }
 
+void clipping(bool on) {
+  for (GLenum i = 0; i < 3; ++i)
+    on ? glEnable(GL_CLIP_DISTANCE0 + i) : glDisable(GL_CLIP_DISTANCE0 + i);
+}
+
 void cullBack(bool on) {
   on ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
 }
 
-bool samePlane(const CutPlane& a, const CutPlane& b) {
-  return a.normal == b.normal && a.offset == b.offset;
+float idLevel(std::size_t index) {
+  return static_cast<float>(index + 1) / 255.0f;
 }
 
-// Limits drawing to the picture of a box; all of it when the box reaches behind the eye.
-void scissorTo(const Bounds& b, const Camera& camera, int width, int height) {
-  Eigen::Vector2f low(1, 1), high(-1, -1);
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector4f q = camera.viewProjection * b.corner(i).homogeneous();
-    if (q.w() <= 0) {
-      glScissor(0, 0, width, height);
-      return;
+int shareOf(int pixels) {
+  return (pixels + kAoShare - 1) / kAoShare;
+}
+
+// What stands behind everything; half a level of fixed ordered noise hides the bands of the dark
+// colours. Alpha 0: no structure.
+Image makeBackground(const RenderPreset& preset) {
+  Image image(preset.width, preset.height);
+  for (int y = 0; y < image.height; ++y) {
+    const float up = 1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height);
+    const float f = up * up * (3 - 2 * up);
+    const Colour sky = (1 - f) * preset.background.bottom_srgb + f * preset.background.top_srgb;
+    for (int x = 0; x < image.width; ++x) {
+      const float noise = static_cast<float>((x * 5 + y * 3) & 7) / 8 - 0.4375f;
+      for (int k = 0; k < 3; ++k)
+        image.row(y)[4 * x + k] = static_cast<std::uint8_t>(
+            std::clamp(std::lround(255 * sky[k] + noise), 0L, 255L));
+      image.row(y)[4 * x + 3] = 0;
     }
-    low = low.cwiseMin(q.head<2>() / q.w());
-    high = high.cwiseMax(q.head<2>() / q.w());
   }
-  const auto pixel = [](float v, int n, int extra) {
-    return std::clamp(
-        static_cast<int>(std::floor((v * 0.5f + 0.5f) * static_cast<float>(n))) + extra, 0, n);
-  };
-  const int x0 = pixel(low.x(), width, -1), x1 = pixel(high.x(), width, 2);
-  const int y0 = pixel(low.y(), height, -1), y1 = pixel(high.y(), height, 2);
-  glScissor(x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0));
+  return image;
+}
+
+// sRGB of a square root of linear, both in 8 bits.
+std::array<std::uint8_t, 256> makeEncoding() {
+  std::array<std::uint8_t, 256> table{};
+  for (int i = 0; i < 256; ++i) {
+    const double c = i * i / (255.0 * 255.0);
+    const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+    table[i] = static_cast<std::uint8_t>(std::lround(255 * srgb));
+  }
+  return table;
 }
 }  // namespace
-
-SurfacePass::~SurfacePass() {
-  if (emptyArray_) glDeleteVertexArrays(1, &emptyArray_);
-}
 
 Result<void> SurfacePass::create(const std::filesystem::path& dir, const RenderPreset& preset) {
   const struct {
     Program& program;
-    const char *vertex, *fragment;
-  } programs[] = {{solid_, "solid.vert", "solid.frag"},
-                  {depthOnly_, "solid.vert", "depth.frag"},
-                  {ao_, "screen.vert", "ao.frag"},
-                  {blur_, "screen.vert", "blur.frag"},
-                  {composite_, "screen.vert", "composite.frag"}};
+    const char *vertex, *fragment, *define;
+  } programs[] = {{smooth_, "solid.vert", "solid.frag", ""},
+                  {detailed_, "solid.vert", "solid.frag", "DETAIL"},
+                  {section_, "solid.vert", "section.frag", ""},
+                  {flat_, "solid.vert", "flat.frag", ""},
+                  {depthOnly_, "solid.vert", "depth.frag", ""},
+                  {ao_, "screen.vert", "ao.frag", ""},
+                  {blur_, "screen.vert", "blur.frag", ""},
+                  {composite_, "screen.vert", "composite.frag", ""}};
   for (const auto& p : programs) {
-    auto loaded = Program::load(dir, p.vertex, p.fragment);
+    auto loaded = Program::load(dir, p.vertex, p.fragment, p.define);
     if (!loaded) return std::unexpected(loaded.error());
     p.program = std::move(*loaded);
   }
   const int w = preset.width, h = preset.height, map = preset.light.shadowMap_px;
   const Result<void> made[] = {
-      scene_.create("scene", w, h, preset.msaa, GL_RGBA8, GL_DEPTH24_STENCIL8),
-      resolved_.create("resolved", w, h, 1, GL_RGBA8, GL_DEPTH24_STENCIL8),
-      shadow_.create("shadow map", map, map, 1, 0, GL_DEPTH_COMPONENT32F),
-      aoRaw_.create("occlusion", w / 2, h / 2, 1, GL_RG32F, 0),
-      aoSmooth_.create("occlusion, smooth", w / 2, h / 2, 1, GL_RG32F, 0),
-      picture_.create("picture", w, h, 1, GL_RGBA8, 0)};
+      scene_.create("scene", w, h, GL_RGBA8, GL_DEPTH24_STENCIL8),
+      shadow_.create("shadow map", map, map, 0, GL_DEPTH_COMPONENT32F),
+      aoRaw_.create("occlusion", shareOf(w), shareOf(h), GL_RG32F, 0),
+      aoSmooth_.create("occlusion, smooth", shareOf(w), shareOf(h), GL_RG32F, 0),
+      picture_.create("picture", w, h, GL_RGBA8, 0)};
   for (const auto& m : made)
     if (!m) return m;
+  picture_.testAgainst(scene_);
   // the shadow map is compared, not read; beyond its border all is lit
   shadow_.depth().bind(0);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
@@ -87,36 +107,8 @@ Result<void> SurfacePass::create(const std::filesystem::path& dir, const RenderP
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   setSpiral(preset.ao.taps);
-  mesh_.create();
-  glGenVertexArrays(1, &emptyArray_);
-  return {};
-}
-
-// One square per distinct cut plane, shared by all structures: equal planes give equal depths,
-// so where two sections overlap the one drawn first stays.
-void SurfacePass::addQuads(DrawList& list) {
-  quads_.clear();
-  const Vec3f centre = 0.5f * (list.bounds.low + list.bounds.high);
-  const float size = (list.bounds.high - list.bounds.low).norm();
-  for (const auto* items : {&list.solid, &list.ghost})
-    for (const DrawItem& item : *items)
-      for (const CutPlane& c : item.cuts) {
-        if (quadFor(c).count) continue;
-        const Vec3f foot = centre + (c.offset - c.normal.dot(centre)) * c.normal;
-        const Vec3f u = c.normal.unitOrthogonal() * size, v = c.normal.cross(u);
-        const Range r{static_cast<int>(list.indices.size()), 6,
-                      static_cast<int>(list.vertices.size())};
-        for (const Vec3f& p :
-             {Vec3f(foot - u - v), Vec3f(foot + u - v), Vec3f(foot + u + v), Vec3f(foot - u + v)})
-          list.vertices.push_back({p, c.normal, p});
-        for (std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) list.indices.push_back(i);
-        quads_.push_back({c, r});
-      }
-}
-
-Range SurfacePass::quadFor(const CutPlane& plane) const {
-  for (const auto& [p, range] : quads_)
-    if (samePlane(p, plane)) return range;
+  background_ = makeBackground(preset);
+  encoding_ = makeEncoding();
   return {};
 }
 
@@ -138,63 +130,61 @@ void SurfacePass::drawShadowMap(const DrawList& list, const Camera& camera,
   depthOnly_.set("uViewProj", Mat4f(clipFromTexture * shadowFromWorld_));
   for (const DrawItem& item : list.solid) {
     setClips(depthOnly_, item.cuts);
-    mesh_.draw(item.mesh);
+    cullBack(item.closed && item.cuts.empty());
+    mesh_->draw(item);
   }
+  cullBack(false);
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void SurfacePass::setLights(const Camera& camera, const RenderPreset& preset) {
+void SurfacePass::setView(const Camera& camera, const RenderPreset& preset) {
   const LightDef& l = preset.light;
-  solid_.use();
-  solid_.set("uViewProj", camera.viewProjection);
-  solid_.set("uEye", camera.eye);
-  solid_.set("uUp", camera.up);
-  solid_.set("uKeyDir", camera.fromPicture(l.key.direction));
-  solid_.set("uKey", Vec3f(linear(l.key.colour_srgb) * l.key.intensity));
-  solid_.set("uFillDir", camera.fromPicture(l.fill.direction));
-  solid_.set("uFill", Vec3f(linear(l.fill.colour_srgb) * l.fill.intensity));
-  solid_.set("uAmbientTop", Vec3f(linear(l.ambientTop_srgb) * l.ambientIntensity));
-  solid_.set("uAmbientBottom", Vec3f(linear(l.ambientBottom_srgb) * l.ambientIntensity));
-  solid_.set("uShadowProj", shadowFromWorld_);
-  solid_.set("uShadowStrength", l.shadow ? l.shadowStrength : 0.0f);
-  solid_.set("uShadowRadius", l.shadowSoftness_m / (2 * shadowRadius_m_));
-  solid_.set("uShadowBias", kShadowBias_m);
-  solid_.set("uUnlit", 0);
-  solid_.set("uExposure", id_ > 0 ? 1.0f : preset.exposure);
-  solid_.set("uToneMap", preset.toneMap && id_ == 0 ? 1 : 0);
+  for (Program* p : {&smooth_, &detailed_, &section_, &flat_, &depthOnly_}) {
+    p->use();
+    p->set("uViewProj", camera.viewProjection);
+    p->set("uEye", camera.eye);
+    p->set("uUp", camera.up);
+    p->set("uKeyDir", camera.fromPicture(l.key.direction));
+    p->set("uKey", Vec3f(linear(l.key.colour_srgb) * l.key.intensity));
+    p->set("uFillDir", camera.fromPicture(l.fill.direction));
+    p->set("uFill", Vec3f(linear(l.fill.colour_srgb) * l.fill.intensity));
+    p->set("uAmbientTop", Vec3f(linear(l.ambientTop_srgb) * l.ambientIntensity));
+    p->set("uAmbientBottom", Vec3f(linear(l.ambientBottom_srgb) * l.ambientIntensity));
+    p->set("uShadowProj", shadowFromWorld_);
+    p->set("uShadowStrength", l.shadow ? l.shadowStrength : 0.0f);
+    p->set("uShadowRadius", l.shadowSoftness_m / (2 * shadowRadius_m_));
+    p->set("uShadowBias", kShadowBias_m);
+    p->set("uExposure", preset.exposure);
+    p->set("uToneMap", preset.toneMap ? 1 : 0);
+  }
   shadow_.depth().bind(0);
 }
 
-void SurfacePass::setMaterial(const Material& m, bool section, float opacity) {
-  if (id_ > 0) {  // the shader writes the square root of an unlit colour
-    const float level = static_cast<float>(id_) / 255.0f;
-    solid_.set("uUnlit", 1);
-    solid_.set("uBase", Vec3f(Vec3f::Constant(level * level)));
-    solid_.set("uOpacity", 1.0f);
-    return;
-  }
-  solid_.set("uBase", linear(section ? m.sectionColour_srgb : m.baseColour_srgb));
-  solid_.set("uSpecular", m.specular);
-  solid_.set("uRoughness", std::clamp(m.roughness, 0.05f, 1.0f));
-  solid_.set("uTranslucency", section ? 0.0f : m.translucency);
-  solid_.set("uWetness", section ? 0.0f : m.wetness);
-  solid_.set("uMottle", section ? 0.3f * m.mottle : m.mottle);
-  solid_.set("uRelief", section ? 0.0f : m.relief);
-  solid_.set("uReliefSize", m.reliefSize_m);
-  solid_.set("uSection", section ? 1 : 0);
-  solid_.set("uOpacity", opacity);
+Program& SurfacePass::surfaceOf(const DrawItem& item, float id, float opacity) {
+  const Material& m = *item.material;
+  Program& p = onlyIds_ ? flat_ : m.mottle > 0 || m.relief > 0 ? detailed_ : smooth_;
+  p.use();
+  p.set("uBase", linear(m.baseColour_srgb));
+  p.set("uSpecular", m.specular);
+  p.set("uRoughness", std::clamp(m.roughness, 0.05f, 1.0f));
+  p.set("uTranslucency", m.translucency);
+  p.set("uWetness", m.wetness);
+  p.set("uMottle", m.mottle);
+  p.set("uRelief", m.relief);
+  p.set("uReliefSize", m.reliefSize_m);
+  p.set("uOpacity", opacity);
+  p.set("uId", id);
+  setClips(p, item.cuts);
+  return p;
 }
 
 // Stencil, then cover: the fan's winding number is not 0 exactly inside the section, however
 // concave or holed it is.
-void SurfacePass::drawCaps(const DrawItem& item, const Camera& camera) {
+void SurfacePass::drawCaps(const DrawItem& item, const Camera& camera, float id) {
   for (int k = 0; k < static_cast<int>(item.cuts.size()); ++k) {
     const CutPlane& c = item.cuts[k];
-    if (item.fans[k].count == 0 || !camera.sees(c.normal, c.offset)) continue;
-    glEnable(GL_SCISSOR_TEST);
-    scissorTo(item.fanBounds[static_cast<std::size_t>(k)], camera, scene_.width(), scene_.height());
-    // the cover below leaves the stencil empty again, but where another cut takes from it
-    if (item.cuts.size() > 1) glClear(GL_STENCIL_BUFFER_BIT);
+    const Section& section = item.sections[k];
+    if (section.fan.count == 0 || !camera.sees(c.normal, c.offset)) continue;
     glEnable(GL_STENCIL_TEST);
     glStencilFunc(GL_ALWAYS, 0, 0xff);
     glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_DECR_WRAP, GL_DECR_WRAP);
@@ -202,108 +192,108 @@ void SurfacePass::drawCaps(const DrawItem& item, const Camera& camera) {
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glDisable(GL_DEPTH_TEST);
     depthOnly_.use();
-    depthOnly_.set("uViewProj", camera.viewProjection);
     setClips(depthOnly_, {});
-    mesh_.draw(item.fans[k]);
+    mesh_->draw(section.fan);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glEnable(GL_DEPTH_TEST);
     glStencilFunc(GL_NOTEQUAL, 0, 0xff);
     glStencilOp(GL_KEEP, GL_ZERO, GL_ZERO);
-    solid_.use();
-    setMaterial(*item.material, true, 1.0f);
-    setClips(solid_, item.cuts, k);
-    mesh_.draw(quadFor(c));
+    Program& p = onlyIds_ ? flat_ : section_;
+    p.use();
+    p.set("uBase", linear(item.material->sectionColour_srgb));
+    p.set("uId", id);
+    setClips(p, item.cuts, k);
+    mesh_->draw(section.cover);
+    // the cover leaves the stencil empty again, but where another cut takes from it
     if (item.cuts.size() > 1) glClear(GL_STENCIL_BUFFER_BIT);
     glDisable(GL_STENCIL_TEST);
-    glDisable(GL_SCISSOR_TEST);
   }
 }
 
 void SurfacePass::drawOutlines(const DrawItem& item, const Camera& camera,
-                               const RenderPreset& preset) {
-  for (int k = 0; k < static_cast<int>(item.outlines.size()); ++k) {
-    if (item.outlines[k].count == 0 || !camera.sees(item.cuts[k].normal, item.cuts[k].offset))
+                               const RenderPreset& preset, float alpha) {
+  for (int k = 0; k < static_cast<int>(item.sections.size()); ++k) {
+    if (item.sections[k].outline.count == 0 || !camera.sees(item.cuts[k].normal, item.cuts[k].offset))
       continue;
     const float keep = 1 - preset.sectionOutlineDarkness;
-    solid_.set("uUnlit", 1);
-    solid_.set("uOpacity", std::sqrt(item.opacity));
-    solid_.set("uBase", Vec3f(linear(item.material->sectionColour_srgb) * keep * keep));
-    setClips(solid_, item.cuts, k);
-    mesh_.draw(item.outlines[k]);
-    solid_.set("uUnlit", 0);
+    flat_.use();
+    flat_.set("uBase", Vec3f(linear(item.material->sectionColour_srgb) * keep * keep));
+    flat_.set("uId", alpha);
+    setClips(flat_, item.cuts, k);
+    mesh_->draw(item.sections[k].outline);
   }
 }
 
-void SurfacePass::drawSolids(const Target& to, const DrawList& list, const Camera& camera,
+void SurfacePass::drawSolids(const DrawList& list, const Camera& camera,
                              const RenderPreset& preset) {
-  to.bind();
-  glClearColor(0, 0, 0, 0);
+  scene_.bind();
+  // ghosts over the background are mixed with this instead of its exact shade
+  const Colour sky = 0.5f * (preset.background.top_srgb + preset.background.bottom_srgb);
+  const Vec3f clear = linear(sky).cwiseSqrt();
+  glClearColor(clear.x(), clear.y(), clear.z(), 0);
+  glEnable(GL_DEPTH_TEST);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   glDepthFunc(GL_LESS);
-  setLights(camera, preset);
-  const bool ids = id_ > 0;
-  // caps in order of priority; then the nearest meshes first, so that what they hide is not shaded
-  for (const DrawItem& item : list.solid) {
-    drawCaps(item, camera);
-    if (ids) ++id_;
+  setView(camera, preset);
+  for (std::size_t i = 0; i < list.solid.size(); ++i) {
+    drawCaps(list.solid[i], camera, idLevel(i));
+    if (!onlyIds_) drawOutlines(list.solid[i], camera, preset, idLevel(i));
   }
-  id_ = ids ? 1 : 0;
+  // the nearest meshes first, so that what they hide is not shaded
   for (const int index : nearestFirst(list.solid, camera.back)) {
     const DrawItem& item = list.solid[static_cast<std::size_t>(index)];
-    if (ids) id_ = 1 + index;
-    setMaterial(*item.material, false, 1.0f);
-    setClips(solid_, item.cuts);
+    surfaceOf(item, idLevel(static_cast<std::size_t>(index)), 1.0f);
     cullBack(item.closed);  // caps hide every back face of a closed mesh
-    mesh_.draw(item.mesh);
-    cullBack(false);
+    mesh_->draw(item);
   }
-  if (ids) id_ = 1 + static_cast<int>(list.solid.size());
-  if (!ids)
-    for (const DrawItem& item : list.solid) drawOutlines(item, camera, preset);
+  cullBack(false);
 }
 
 // Depth first, so that only the nearest layer of a ghost is seen.
 void SurfacePass::drawGhosts(const DrawList& list, const Camera& camera,
                              const RenderPreset& preset) {
   if (list.ghost.empty()) return;
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  scene_.bind();
+  glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
-  for (const DrawItem& item : list.ghost) {
-    depthOnly_.use();
-    depthOnly_.set("uViewProj", camera.viewProjection);
-    setClips(depthOnly_, item.cuts);
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    mesh_.draw(item.mesh);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    solid_.use();
-    setMaterial(*item.material, false, item.opacity);
-    setClips(solid_, item.cuts);
-    mesh_.draw(item.mesh);
-    drawOutlines(item, camera, preset);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  shadow_.depth().bind(0);
+  for (std::size_t i = 0; i < list.ghost.size(); ++i) {
+    const DrawItem& item = list.ghost[i];
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+    flat_.use();
+    flat_.set("uId", idLevel(list.solid.size() + i));
+    setClips(flat_, item.cuts);
+    mesh_->draw(item);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+    glEnable(GL_BLEND);
+    surfaceOf(item, 1.0f, item.opacity);
+    mesh_->draw(item);
+    drawOutlines(item, camera, preset, std::sqrt(item.opacity));
+    glDisable(GL_BLEND);
   }
-  glDisable(GL_BLEND);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 void SurfacePass::drawOcclusion(const Camera& camera, const RenderPreset& preset) {
-  const int w = preset.width, h = preset.height;
   glDisable(GL_DEPTH_TEST);
-  glBindVertexArray(emptyArray_);
   aoRaw_.bind();
   ao_.use();
   ao_.set("uNearFar", Vec3f(camera.near_m, camera.far_m, camera.eye.w()));
   ao_.set("uTanHalf", Eigen::Vector2f(1 / camera.projection(0, 0), 1 / camera.projection(1, 1)));
-  ao_.set("uSize", Eigen::Vector2f(static_cast<float>(w), static_cast<float>(h)));
+  ao_.set("uSize", Eigen::Vector2f(static_cast<float>(preset.width),
+                                   static_cast<float>(preset.height)));
+  ao_.set("uShare", kAoShare);
   ao_.set("uPixelsPerMetre", camera.pixelsPerMetre);
   ao_.set("uRadius", preset.ao.radius_m);
   ao_.set("uTaps", preset.ao.taps);
-  resolved_.depth().bind(0);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  scene_.depth().bind(0);
+  mesh_->drawScreen();
   aoSmooth_.bind();
   blur_.use();
   blur_.set("uRange", kAoRange * preset.ao.radius_m);
   aoRaw_.colour().bind(0);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  mesh_->drawScreen();
 }
 
 // Tap i of n at radius (i + 0.5) / n, turned by the golden angle.
@@ -317,81 +307,92 @@ void SurfacePass::setSpiral(int taps) {
   }
 }
 
+// Only where something was drawn: the far plane lies behind it.
 void SurfacePass::composite(const Camera& camera, const RenderPreset& preset) {
-  glDisable(GL_DEPTH_TEST);
-  glBindVertexArray(emptyArray_);
   picture_.bind();
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
   composite_.use();
   composite_.set("uAoStrength", preset.ao.strength);
   composite_.set("uNearFar", Vec3f(camera.near_m, camera.far_m, camera.eye.w()));
+  composite_.set("uShare", kAoShare);
   composite_.set("uRange", kAoRange * preset.ao.radius_m);
-  composite_.set("uTop", preset.background.top_srgb);
-  composite_.set("uBottom", preset.background.bottom_srgb);
-  resolved_.colour().bind(0);
+  scene_.colour().bind(0);
   aoSmooth_.colour().bind(1);
-  resolved_.depth().bind(2);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  scene_.depth().bind(2);
+  mesh_->drawScreen();
+  glDepthMask(GL_TRUE);
 }
 
-void SurfacePass::begin(DrawList& list) {
-  for (int i = 0; i < 3; ++i) glEnable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
-  glDisable(GL_CULL_FACE);
-  glEnable(GL_MULTISAMPLE);
-  glEnable(GL_DEPTH_TEST);
-  addQuads(list);
-  mesh_.upload(list.vertices, list.indices);
+// sRGB, before the background.
+void SurfacePass::finish(Image& image) const {
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    std::uint8_t* p = &image.rgba[i];
+    if (p[3] == 0)
+      std::copy_n(&background_.rgba[i], 3, p);
+    else
+      for (int k = 0; k < 3; ++k) p[k] = encoding_[p[k]];
+  }
 }
 
-void SurfacePass::end() {
-  for (int i = 0; i < 3; ++i) glDisable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
-}
-
-Result<Image> SurfacePass::draw(DrawList& list, const Camera& camera, const RenderPreset& preset) {
-  begin(list);
+Result<Image> SurfacePass::draw(const GpuMesh& mesh, const DrawList& list, const Camera& camera,
+                                const RenderPreset& preset) {
+  if (auto ok = begin(mesh, list, false); !ok) return std::unexpected(ok.error());
   drawShadowMap(list, camera, preset);
-  drawSolids(scene_, list, camera, preset);
-  scene_.resolveTo(resolved_, GL_DEPTH_BUFFER_BIT);
-  scene_.bind();
-  drawGhosts(list, camera, preset);
-  scene_.resolveTo(resolved_, GL_COLOR_BUFFER_BIT);
-  end();
+  drawSolids(list, camera, preset);
+  clipping(false);
   if (preset.ao.strength > 0) drawOcclusion(camera, preset);
-  composite(camera, preset);
-  picture_.bind();
+  clipping(true);
+  drawGhosts(list, camera, preset);
+  clipping(false);
+  if (preset.ao.strength > 0)
+    composite(camera, preset);
+  else
+    scene_.bind();
   Image image = readPicture(preset.width, preset.height);
   if (auto ok = checkedGl("surfaces"); !ok) return std::unexpected(ok.error());
+  finish(image);
+  if (preset.smoothEdges) smoothEdges(image);
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
   return image;
 }
 
-void SurfacePass::countIds(const std::vector<DrawItem>& items, int firstId,
-                           const RenderPreset& preset, std::map<std::string, int>& counts) {
-  const Image ids = readPicture(preset.width, preset.height);
-  for (std::size_t i = 0; i < ids.rgba.size(); i += 4)
-    if (const int k = ids.rgba[i] - firstId; k >= 0 && k < static_cast<int>(items.size()))
-      ++counts[items[static_cast<std::size_t>(k)].name];
+Result<void> SurfacePass::begin(const GpuMesh& mesh, const DrawList& list, bool onlyIds) {
+  if (list.solid.size() + list.ghost.size() > kMostIds)
+    return failure("view", fmt::format("more than {} structures", kMostIds),
+                   "Hide some in the view.");
+  mesh_ = &mesh;
+  onlyIds_ = onlyIds;
+  clipping(true);
+  glDisable(GL_CULL_FACE);
+  return {};
 }
 
-Result<std::map<std::string, int>> SurfacePass::visiblePixels(DrawList& list, const Camera& camera,
+void SurfacePass::countIds(const std::vector<DrawItem>& items, std::size_t first,
+                           const RenderPreset& preset, std::map<std::string, int>& counts) {
+  const Image ids = readPicture(preset.width, preset.height);
+  std::array<int, 256> seen{};
+  for (std::size_t i = 3; i < ids.rgba.size(); i += 4) ++seen[ids.rgba[i]];
+  for (std::size_t i = 0; i < items.size(); ++i) counts[items[i].name] += seen[first + i + 1];
+}
+
+Result<std::map<std::string, int>> SurfacePass::visiblePixels(const GpuMesh& mesh,
+                                                              const DrawList& list,
+                                                              const Camera& camera,
                                                               const RenderPreset& preset) {
-  constexpr std::size_t kMostIds = 255;  // of 8 bits, 0 is the background
-  if (list.solid.size() + list.ghost.size() > kMostIds)
-    return failure("visible pixels", fmt::format("more than {} structures", kMostIds),
-                   "Hide some in the view.");
-  begin(list);
-  id_ = 1;
-  drawSolids(resolved_, list, camera, preset);
+  if (auto ok = begin(mesh, list, true); !ok) return std::unexpected(ok.error());
+  drawSolids(list, camera, preset);
   std::map<std::string, int> counts;
-  countIds(list.solid, 1, preset, counts);
-  const int firstGhost = id_;
-  for (const DrawItem& item : list.ghost) {
-    setMaterial(*item.material, false, 1.0f);
-    setClips(solid_, item.cuts);
-    mesh_.draw(item.mesh);
-    ++id_;
+  countIds(list.solid, 0, preset, counts);
+  for (std::size_t i = 0; i < list.ghost.size(); ++i) {
+    surfaceOf(list.ghost[i], idLevel(list.solid.size() + i), 1.0f);
+    mesh_->draw(list.ghost[i]);
   }
-  countIds(list.ghost, firstGhost, preset, counts);
-  id_ = 0;
-  end();
+  if (!list.ghost.empty()) countIds(list.ghost, list.solid.size(), preset, counts);
+  clipping(false);
   if (auto ok = checkedGl("surfaces"); !ok) return std::unexpected(ok.error());
   return counts;
 }

@@ -181,7 +181,7 @@ void readPicture(const JsonNode& root, RenderPreset& preset) {
   preset.width = root.integer("width_px", 64, 8192, preset.width);
   preset.height = root.integer("height_px", 64, 8192, preset.height);
   preset.fps = root.number("fps", 30, 240, preset.fps);
-  preset.msaa = root.integer("msaa", 1, 4, preset.msaa);
+  preset.smoothEdges = root.boolean("smoothEdges", preset.smoothEdges);
   preset.exposure = real(root, "exposure", 100, preset.exposure);
   preset.toneMap = root.boolean("toneMap", preset.toneMap);
   preset.sectionOutline_m = length_m(root, "sectionOutline_mm", 20, preset.sectionOutline_m);

@@ -41,7 +41,7 @@ Area lit(const Image& image) {
 
 TEST(Renderer, FlatLitSphereHasItsColourAndArea) {
   RenderPreset p = test::flatPreset(320, 200);
-  p.msaa = 1;
+  p.smoothEdges = false;
   const auto h =
       test::still({test::ellipsoid("ball", "bone", {0, 0, 0}, Vec3f::Constant(0.03f), 64)});
   const Area a = lit(picture(p, h, "side"));
@@ -54,7 +54,7 @@ TEST(Renderer, FlatLitSphereHasItsColourAndArea) {
 TEST(Renderer, LambertSphereHasTheKnownMean) {
   // Light from the viewer: radiance over the disc is cos, whose mean is 2/3 of the albedo.
   RenderPreset p = test::flatPreset(320, 200);
-  p.msaa = 1;
+  p.smoothEdges = false;
   p.light.ambientIntensity = 0;
   p.light.key.direction = {0, 0, 1};
   p.light.key.colour_srgb = Colour(1, 1, 1);
@@ -74,15 +74,15 @@ TEST(Renderer, LambertSphereHasTheKnownMean) {
 }
 
 TEST(Renderer, CappedCutOfACubeIsItsSectionColourOverTheExactArea) {
-  for (int msaa : {1, 4}) {
+  for (bool smooth : {false, true}) {
     RenderPreset p = test::flatPreset(200, 200);
-    p.msaa = msaa;
+    p.smoothEdges = smooth;
     p.views["side"].cuts.push_back({});
     // 40 x 50 mm at 2 px/mm: edges fall on pixel borders
     const auto h =
         test::still({test::box("cube", {-0.02f, -0.02f, -0.03f}, {0.02f, 0.02f, 0.02f})});
     const Area a = lit(picture(p, h, "side"));
-    EXPECT_EQ(a.pixels, 80 * 100) << "msaa " << msaa;
+    EXPECT_EQ(a.pixels, 80 * 100) << "smooth " << smooth;
     const double expected[3] = {0.2 * 255, 0.6 * 255, 0.3 * 255};
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(a.mean[k], expected[k], 2.0) << "channel " << k;
   }
@@ -90,7 +90,7 @@ TEST(Renderer, CappedCutOfACubeIsItsSectionColourOverTheExactArea) {
 
 TEST(Renderer, HollowSectionStaysHollow) {
   RenderPreset p = test::flatPreset(200, 200);
-  p.msaa = 1;
+  p.smoothEdges = false;
   p.views["side"].cuts.push_back({});
   p.fallback.baseColour_srgb = Colour(0.9f, 0.1f, 0.1f);
   auto shell = test::box("shell", Vec3f::Constant(-0.03f), Vec3f::Constant(0.03f));

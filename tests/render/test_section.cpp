@@ -55,7 +55,9 @@ TEST(DrawList, CutsHidesAndGhostsByName) {
   };
   const frame::History h = test::still(
       {ball("whole", 0), ball("half", 0), ball("gone", 0.02f), ball("away", 0), ball("glass", 0)});
-  const DrawList list = buildDrawList(h, 0, prepare(h, 0.87), p, v);
+  const Prepared prepared = prepare(h, p);
+  const FrameGeometry geometry = frameGeometry(h, 0, prepared, p);
+  const DrawList list = buildDrawList(h, 0, geometry, p, v);
   ASSERT_EQ(list.solid.size(), 2u);
   EXPECT_EQ(list.solid[0].name, "whole");
   EXPECT_TRUE(list.solid[0].cuts.empty());

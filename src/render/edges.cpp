@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "render/edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace swallowclip::render {
+namespace {
+
+// What a step of a channel must exceed to be an edge: a tenth of white for red, green, blue; any
+// step of alpha.
+constexpr std::uint8_t kContrast[4] = {26, 26, 26, 0};
+
+// marks[i] becomes 1 where pixel i of `a` and of `b` lie on two sides of an edge.
+void compare(const std::uint8_t* a, const std::uint8_t* b, std::size_t pixels,
+             std::vector<std::uint8_t>& excess, std::uint8_t* marks) {
+  for (std::size_t i = 0; i < pixels; ++i)
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t j = 4 * i + k;
+      const auto d = static_cast<std::uint8_t>(std::max(a[j], b[j]) - std::min(a[j], b[j]));
+      excess[j] = d > kContrast[k];
+    }
+  for (std::size_t i = 0; i < pixels; ++i) {
+    std::uint32_t any;
+    std::memcpy(&any, &excess[4 * i], 4);
+    marks[i] = any != 0;
+  }
+}
+
+// Edges seen along rows, or along columns: `along` and `across` are steps from pixel to pixel.
+struct Walk {
+  const std::uint8_t* edge;   ///< between a pixel and its neighbour across
+  const std::uint8_t* cross;  ///< between a pixel and its neighbour along
+  int length;                 ///< pixels along
+  std::ptrdiff_t along, across;
+
+  bool crossed(std::ptrdiff_t p) const { return cross[p] || cross[p + across]; }
+  /// Where the edge beyond pixel p, which ends between p and its neighbour along, turns to: -1 to
+  /// the side of p, 1 to the other, 0 neither or both.
+  int turn(std::ptrdiff_t p) const { return cross[p + across] - cross[p]; }
+};
+
+// A share of the pixel at `to` shows the colour of `from`, its neighbour across the edge.
+struct Mix {
+  std::ptrdiff_t to, from;
+  float share;
+};
+
+// Half of a run of pixels along an edge: the true edge falls from half a pixel at the turn to
+// nothing at the middle of the run; pixels under it take the other side's colour.
+void mixHalf(const Walk& w, std::ptrdiff_t first, std::ptrdiff_t step, double half, int side,
+             std::vector<Mix>& out) {
+  for (int k = 0; k < half; ++k, first += step) {
+    const double a = k, b = std::min(k + 1.0, half);
+    const auto share = static_cast<float>(0.5 * ((b - a) - (b * b - a * a) / (2 * half)));
+    const std::ptrdiff_t other = first + w.across;
+    out.push_back(side < 0 ? Mix{first, other, share} : Mix{other, first, share});
+  }
+}
+
+// The run of edge pixels that begins at p, the `i`th along, if one does.
+void mixRun(const Walk& w, std::ptrdiff_t p, int i, std::vector<Mix>& out) {
+  if (i > 0 && w.edge[p - w.along] && !w.crossed(p - w.along)) return;  // began before
+  std::ptrdiff_t last = p;
+  int n = 1;
+  while (i + n < w.length && !w.crossed(last) && w.edge[last + w.along]) last += w.along, ++n;
+  if (i > 0)
+    if (const int side = w.turn(p - w.along)) mixHalf(w, p, w.along, 0.5 * n, side, out);
+  if (i + n < w.length)
+    if (const int side = w.turn(last)) mixHalf(w, last, -w.along, 0.5 * n, side, out);
+}
+}  // namespace
+
+void smoothEdges(Image& image) {
+  const std::size_t width = static_cast<std::size_t>(image.width), all = image.rgba.size() / 4;
+  // a row and a column more than there are pixels: no edge beyond the border
+  std::vector<std::uint8_t> below(all + width + 1), right(all + width + 1), excess(4 * width);
+  for (int y = 0; y < image.height; ++y) {
+    const std::uint8_t* row = image.row(y);
+    const std::size_t at = static_cast<std::size_t>(y) * width;
+    compare(row, row + 4, width - 1, excess, &right[at]);
+    if (y + 1 < image.height) compare(row, image.row(y + 1), width, excess, &below[at]);
+  }
+  const std::ptrdiff_t down = image.width;
+  const Walk rows{below.data(), right.data(), image.width, 1, down};
+  const Walk columns{right.data(), below.data(), image.height, down, 1};
+  std::vector<Mix> mixes[2];
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::ptrdiff_t p = y * down + x;
+      if (below[p]) mixRun(rows, p, x, mixes[0]);
+      if (right[p]) mixRun(columns, p, y, mixes[1]);
+    }
+  // an oblique edge is seen both ways: of the two the one that says more counts
+  std::vector<float> total[2] = {std::vector<float>(all), std::vector<float>(all)};
+  for (int k : {0, 1})
+    for (const Mix& m : mixes[k]) total[k][m.to] += m.share;
+  const std::vector<std::uint8_t> before = image.rgba;
+  for (int k : {0, 1})
+    for (const Mix& m : mixes[k]) {
+      const float own = total[k][m.to], other = total[1 - k][m.to];
+      if (own < other || (own == other && k == 1)) continue;
+      for (int c = 0; c < 3; ++c) {
+        const auto difference = static_cast<float>(before[4 * m.from + c] - before[4 * m.to + c]);
+        std::uint8_t& value = image.rgba[4 * m.to + c];
+        value = static_cast<std::uint8_t>(
+            std::clamp(static_cast<int>(value) + static_cast<int>(std::lround(m.share * difference)),
+                       0, 255));
+      }
+    }
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+}
+}  // namespace swallowclip::render
