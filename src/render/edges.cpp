@@ -2,7 +2,6 @@
 #include "render/edges.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -42,10 +41,11 @@ struct Walk {
   int turn(std::ptrdiff_t p) const { return cross[p + across] - cross[p]; }
 };
 
-// A share of the pixel at `to` shows the colour of `from`, its neighbour across the edge.
+// A share, in 255ths, of the pixel at `to` shows the colour of `from`, its neighbour across the
+// edge.
 struct Mix {
   std::ptrdiff_t to, from;
-  float share;
+  int share;
 };
 
 // Half of a run of pixels along an edge: the true edge falls from half a pixel at the turn to
@@ -54,7 +54,8 @@ void mixHalf(const Walk& w, std::ptrdiff_t first, std::ptrdiff_t step, double ha
              std::vector<Mix>& out) {
   for (int k = 0; k < half; ++k, first += step) {
     const double a = k, b = std::min(k + 1.0, half);
-    const auto share = static_cast<float>(0.5 * ((b - a) - (b * b - a * a) / (2 * half)));
+    const int share =
+        static_cast<int>(255 * 0.5 * ((b - a) - (b * b - a * a) / (2 * half)) + 0.5);
     const std::ptrdiff_t other = first + w.across;
     out.push_back(side < 0 ? Mix{first, other, share} : Mix{other, first, share});
   }
@@ -94,21 +95,32 @@ void smoothEdges(Image& image) {
       if (right[p]) mixRun(columns, p, y, mixes[1]);
     }
   // an oblique edge is seen both ways: of the two the one that says more counts
-  std::vector<float> total[2] = {std::vector<float>(all), std::vector<float>(all)};
+  std::vector<std::uint16_t> total[2] = {std::vector<std::uint16_t>(all),
+                                         std::vector<std::uint16_t>(all)};
   for (int k : {0, 1})
-    for (const Mix& m : mixes[k]) total[k][m.to] += m.share;
-  const std::vector<std::uint8_t> before = image.rgba;
+    for (const Mix& m : mixes[k]) total[k][m.to] += static_cast<std::uint16_t>(m.share);
+  struct Change {
+    std::ptrdiff_t to;
+    int colour[3];
+  };
+  std::vector<Change> changes;  // from the picture as it was
+  const auto weaker = [&](int k, std::ptrdiff_t p) {
+    return total[k][p] < total[1 - k][p] || (k == 1 && total[0][p] == total[1][p]);
+  };
   for (int k : {0, 1})
     for (const Mix& m : mixes[k]) {
-      const float own = total[k][m.to], other = total[1 - k][m.to];
-      if (own < other || (own == other && k == 1)) continue;
-      for (int c = 0; c < 3; ++c) {
-        const auto difference = static_cast<float>(before[4 * m.from + c] - before[4 * m.to + c]);
-        std::uint8_t& value = image.rgba[4 * m.to + c];
-        value = static_cast<std::uint8_t>(
-            std::clamp(static_cast<int>(value) + static_cast<int>(std::lround(m.share * difference)),
-                       0, 255));
+      if (weaker(k, m.to)) continue;
+      Change c{m.to, {}};
+      for (int n = 0; n < 3; ++n) {
+        const int step = m.share * (image.rgba[4 * m.from + n] - image.rgba[4 * m.to + n]);
+        c.colour[n] = (step + (step < 0 ? -127 : 127)) / 255;
       }
+      changes.push_back(c);
+    }
+  for (const Change& c : changes)
+    for (int n = 0; n < 3; ++n) {
+      std::uint8_t& value = image.rgba[4 * c.to + n];
+      value = static_cast<std::uint8_t>(std::clamp(value + c.colour[n], 0, 255));
     }
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
 }

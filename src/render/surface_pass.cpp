@@ -10,7 +10,7 @@
 namespace swallowclip::render {
 namespace {
 
-constexpr int kAoShare = 3;               // occlusion is smooth: one value for 3 x 3 pixels
+constexpr int kAoShare = 4;               // occlusion is smooth: one value for 4 x 4 pixels
 constexpr float kAoRange = 0.4f;          // depths this share of the radius apart are not mixed
 constexpr float kShadowBias_m = 0.8e-3f;  // about 3 texels of a 1024 map over 250 mm
 constexpr std::size_t kMostIds = 255;     // of 8 bits, 0 is the background
@@ -327,15 +327,17 @@ void SurfacePass::composite(const Camera& camera, const RenderPreset& preset) {
   glDepthMask(GL_TRUE);
 }
 
-// sRGB, before the background.
-void SurfacePass::finish(Image& image) const {
+// sRGB, before the background, opaque.
+void SurfacePass::finish(Image& image, bool smooth) const {
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     std::uint8_t* p = &image.rgba[i];
     if (p[3] == 0)
       std::copy_n(&background_.rgba[i], 3, p);
     else
       for (int k = 0; k < 3; ++k) p[k] = encoding_[p[k]];
+    if (!smooth) p[3] = 255;
   }
+  if (smooth) smoothEdges(image);
 }
 
 Result<Image> SurfacePass::draw(const GpuMesh& mesh, const DrawList& list, const Camera& camera,
@@ -354,9 +356,7 @@ Result<Image> SurfacePass::draw(const GpuMesh& mesh, const DrawList& list, const
     scene_.bind();
   Image image = readPicture(preset.width, preset.height);
   if (auto ok = checkedGl("surfaces"); !ok) return std::unexpected(ok.error());
-  finish(image);
-  if (preset.smoothEdges) smoothEdges(image);
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  finish(image, preset.smoothEdges);
   return image;
 }
 

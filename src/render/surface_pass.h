@@ -37,7 +37,7 @@ class SurfacePass {
   void drawOcclusion(const Camera& camera, const RenderPreset& preset);
   void setSpiral(int taps);
   void composite(const Camera& camera, const RenderPreset& preset);
-  void finish(Image& image) const;
+  void finish(Image& image, bool smooth) const;
   void countIds(const std::vector<DrawItem>& items, std::size_t first, const RenderPreset& preset,
                 std::map<std::string, int>& counts);
 
