@@ -13,14 +13,13 @@ uniform float uShadowStrength, uShadowRadius, uShadowBias;
 layout(binding = 0) uniform sampler2DShadow uShadow;
 layout(location = 0) out vec4 oColour;
 
-const vec2 kDisc[5] = vec2[](vec2(0.0), vec2(0.73, 0.24), vec2(-0.24, 0.73),
-                             vec2(-0.73, -0.24), vec2(0.24, -0.73));
+const vec2 kDisc[4] = vec2[](vec2(0.6, 0.2), vec2(-0.2, 0.6), vec2(-0.6, -0.2), vec2(0.2, -0.6));
 
 void main() {
   vec3 p = (uShadowProj * vec4(vPosition + vNormal * uShadowBias, 1.0)).xyz;
   float lit = 0.0;
-  for (int i = 0; i < 5; ++i) lit += texture(uShadow, vec3(p.xy + uShadowRadius * kDisc[i], p.z));
-  lit = mix(1.0, lit / 5.0, uShadowStrength);
+  for (int i = 0; i < 4; ++i) lit += texture(uShadow, vec3(p.xy + uShadowRadius * kDisc[i], p.z));
+  lit = mix(1.0, lit / 4.0, uShadowStrength);
   vec3 light = 0.5 * (uAmbientTop + uAmbientBottom) + 0.5 * lit * uKey + 0.3 * uFill;
   vec3 c = uBase * light * uExposure;
   const float knee = 0.7;

@@ -98,42 +98,51 @@ Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& pre
   for (const EventMark& e : marks) chapters.push_back({e.name, e.time_s});
   const int poster = posterFrame(h, m);
   ClipTimes times;
+  // all views of a frame one after the other: they share its geometry
+  struct Clip {
+    std::string view;
+    std::filesystem::path path;
+    std::unique_ptr<video::FrameSink> sink;
+    Image poster;
+  };
+  std::vector<Clip> clips;
   for (const std::string& view : o.views) {
-    progress.stage(fmt::format("{}-{}: drawing", stem, view));
-    const std::filesystem::path clip = folder / fmt::format("{}-{}.mp4", stem, view);
     video::Mp4Def def;
-    def.path = clip;
+    def.path = folder / fmt::format("{}-{}.mp4", stem, view);
     def.width = preset.width;
     def.height = preset.height;
     def.rateNumerator = static_cast<int>(std::lround(h.meta.fps));
     auto sink = video::makeMp4Sink(def);
     if (!sink) return std::unexpected(sink.error());
-    std::filesystem::path posterPath = clip;
-    posterPath.replace_extension(".png");
-    Image posterImage;
-    for (int k = 0; k < h.frames(); ++k) {
+    clips.push_back({view, def.path, std::move(*sink), {}});
+  }
+  progress.stage(fmt::format("{}: drawing {}", stem, fmt::join(o.views, ", ")));
+  for (int k = 0; k < h.frames(); ++k) {
+    caption.time_s = h.time_s[k];
+    const std::string live = liveValue(h, m, k);
+    caption.subtitle = live.empty() ? bolus : bolus + "  ·  " + live;
+    for (Clip& clip : clips) {
       if (interrupted()) return std::unexpected(interruptedError());
       const double t0 = now_s();
-      caption.time_s = h.time_s[k];
-      const std::string live = liveValue(h, m, k);
-      caption.subtitle = live.empty() ? bolus : bolus + "  ·  " + live;
-      auto image = renderer->draw(h, k, view, caption);
+      auto image = renderer->draw(h, k, clip.view, caption);
       if (!image) return std::unexpected(image.error());
       const double t1 = now_s();
-      if (auto pushed = (*sink)->push(*image); !pushed) return std::unexpected(pushed.error());
-      if (k == poster) posterImage = std::move(*image);
+      if (auto pushed = clip.sink->push(*image); !pushed) return std::unexpected(pushed.error());
+      if (k == poster) clip.poster = std::move(*image);
       times.drawing_s += t1 - t0;
       times.encoding_s += now_s() - t1;
-      progress.update(static_cast<double>(k + 1) / h.frames());
     }
+    progress.update(static_cast<double>(k + 1) / h.frames());
+  }
+  for (Clip& clip : clips) {
     const double t2 = now_s();
-    if (auto done = (*sink)->finish(); !done) return std::unexpected(done.error());
+    if (auto done = clip.sink->finish(); !done) return std::unexpected(done.error());
     times.encoding_s += now_s() - t2;
-    if (auto written = video::writePng(posterImage, posterPath); !written)
+    if (auto written = video::writePng(clip.poster, clip.path.replace_extension(".png")); !written)
       return std::unexpected(written.error());
-    std::filesystem::path vtt = clip;
-    vtt.replace_extension(".vtt");
-    if (auto written = video::writeVtt(chapters, h.frames() / h.meta.fps, vtt); !written)
+    if (auto written = video::writeVtt(chapters, h.frames() / h.meta.fps,
+                                       clip.path.replace_extension(".vtt"));
+        !written)
       return std::unexpected(written.error());
   }
   return times;

@@ -192,27 +192,28 @@ Result<void> checkViews(const RunOptions& o, const std::filesystem::path& run, P
   if (!history) return std::unexpected(history.error());
   auto renderer = render::Renderer::create(o.data / "shaders", *preset);
   if (!renderer) return std::unexpected(renderer.error());
-  std::vector<std::string> losses;
-  for (const auto& [view, def] : preset->views) {
-    if (def.shows.empty()) continue;
-    progress.stage(fmt::format("{}: {}", run.string(), view));
-    std::map<std::string, std::pair<render::Loss, int>> worst;  // by structure, with its frame
-    for (int k = 0; k < history->frames(); ++k) {
+  progress.stage(run.string());
+  using Worst = std::map<std::string, std::pair<render::Loss, int>>;  // by structure, with its frame
+  std::map<std::string, Worst> worst;                                 // by view
+  for (int k = 0; k < history->frames(); ++k) {
+    for (const auto& [view, def] : preset->views) {
       if (interrupted()) return std::unexpected(interruptedError());
+      if (def.shows.empty()) continue;
       auto lost = renderer->lost(*history, k, view);
       if (!lost) return std::unexpected(lost.error());
       for (const render::Loss& loss : *lost) {
-        const auto it = worst.find(loss.structure);
-        if (it == worst.end() || loss.pixels < it->second.first.pixels)
-          worst[loss.structure] = {loss, k};
+        const auto [it, first] = worst[view].try_emplace(loss.structure, loss, k);
+        if (!first && loss.pixels < it->second.first.pixels) it->second = {loss, k};
       }
-      progress.update(static_cast<double>(k + 1) / history->frames());
     }
-    for (const auto& [structure, found] : worst)
+    progress.update(static_cast<double>(k + 1) / history->frames());
+  }
+  std::vector<std::string> losses;
+  for (const auto& [view, structures] : worst)
+    for (const auto& [structure, found] : structures)
       losses.push_back(fmt::format("view '{}' loses '{}': {} pixels at frame {}, {} expected", view,
                                    structure, found.first.pixels, found.second,
                                    found.first.expected));
-  }
   if (losses.empty()) return {};
   return failure(run.string(), fmt::format("{}", fmt::join(losses, "\n  ")),
                  "Move the camera or the cuts of the preset, or lower what the view \"shows\".");

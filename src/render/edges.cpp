@@ -13,14 +13,12 @@ namespace {
 constexpr std::uint8_t kContrast[4] = {26, 26, 26, 0};
 
 // marks[i] becomes 1 where pixel i of `a` and of `b` lie on two sides of an edge.
-void compare(const std::uint8_t* a, const std::uint8_t* b, std::size_t pixels,
-             std::vector<std::uint8_t>& excess, std::uint8_t* marks) {
-  for (std::size_t i = 0; i < pixels; ++i)
-    for (std::size_t k = 0; k < 4; ++k) {
-      const std::size_t j = 4 * i + k;
-      const auto d = static_cast<std::uint8_t>(std::max(a[j], b[j]) - std::min(a[j], b[j]));
-      excess[j] = d > kContrast[k];
-    }
+void compare(const std::uint8_t* a, const std::uint8_t* b, const std::vector<std::uint8_t>& limit,
+             std::size_t pixels, std::vector<std::uint8_t>& excess, std::uint8_t* marks) {
+  for (std::size_t j = 0; j < 4 * pixels; ++j) {  // bytes without branches: 16 at a time
+    const std::uint8_t high = std::max(a[j], b[j]), low = std::min(a[j], b[j]);
+    excess[j] = static_cast<std::uint8_t>(high - low) > limit[j];
+  }
   for (std::size_t i = 0; i < pixels; ++i) {
     std::uint32_t any;
     std::memcpy(&any, &excess[4 * i], 4);
@@ -77,12 +75,14 @@ void mixRun(const Walk& w, std::ptrdiff_t p, int i, std::vector<Mix>& out) {
 void smoothEdges(Image& image) {
   const std::size_t width = static_cast<std::size_t>(image.width), all = image.rgba.size() / 4;
   // a row and a column more than there are pixels: no edge beyond the border
-  std::vector<std::uint8_t> below(all + width + 1), right(all + width + 1), excess(4 * width);
+  std::vector<std::uint8_t> below(all + width + 8), right(all + width + 8);
+  std::vector<std::uint8_t> excess(4 * width), limit(4 * width);
+  for (std::size_t j = 0; j < limit.size(); ++j) limit[j] = kContrast[j % 4];
   for (int y = 0; y < image.height; ++y) {
     const std::uint8_t* row = image.row(y);
     const std::size_t at = static_cast<std::size_t>(y) * width;
-    compare(row, row + 4, width - 1, excess, &right[at]);
-    if (y + 1 < image.height) compare(row, image.row(y + 1), width, excess, &below[at]);
+    compare(row, row + 4, limit, width - 1, excess, &right[at]);
+    if (y + 1 < image.height) compare(row, image.row(y + 1), limit, width, excess, &below[at]);
   }
   const std::ptrdiff_t down = image.width;
   const Walk rows{below.data(), right.data(), image.width, 1, down};
@@ -91,6 +91,13 @@ void smoothEdges(Image& image) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const std::ptrdiff_t p = y * down + x;
+      std::uint64_t next[2];  // most pixels lie on no edge: eight at a time
+      std::memcpy(&next[0], &below[p], 8);
+      std::memcpy(&next[1], &right[p], 8);
+      if (!(next[0] | next[1])) {
+        x += 7;
+        continue;
+      }
       if (below[p]) mixRun(rows, p, x, mixes[0]);
       if (right[p]) mixRun(columns, p, y, mixes[1]);
     }

@@ -182,7 +182,8 @@ Result<FloatImage> FluoroPass::signal(const GpuMesh& mesh, const DrawList& list,
 Result<std::map<std::string, int>> FluoroPass::visiblePixels(const GpuMesh& mesh,
                                                              const DrawList& list,
                                                              const Camera& camera,
-                                                             const RenderPreset& preset) {
+                                                             const RenderPreset& preset,
+                                                             const std::set<std::string>& names) {
   mesh_ = &mesh;
   constexpr float kContrast = 0.05f;  // optical depth that shows above the noise; assumed 0.03..0.1
   const float half_px = 0.5f * scale(camera, list.bounds);
@@ -191,6 +192,7 @@ Result<std::map<std::string, int>> FluoroPass::visiblePixels(const GpuMesh& mesh
   std::map<std::string, int> counts;
   for (const auto* items : {&list.solid, &list.ghost})
     for (const DrawItem& item : *items) {
+      if (!names.contains(item.name)) continue;
       if (auto ok = drawDepth(list, camera, preset, item.name); !ok)
         return std::unexpected(ok.error());
       const FloatImage depth{preset.width, preset.height, read(depth_)};

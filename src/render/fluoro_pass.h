@@ -6,6 +6,7 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,10 @@ class FluoroPass {
   Result<FloatImage> signal(const GpuMesh& mesh, const DrawList& list, const Camera& camera,
                             const RenderPreset& preset, int frame);
 
-  /// Pixels in which a structure adds contrast, by itself and within the blades.
+  /// Pixels in which each of `names` adds contrast, by itself and within the blades.
   Result<std::map<std::string, int>> visiblePixels(const GpuMesh& mesh, const DrawList& list,
-                                                   const Camera& camera,
-                                                   const RenderPreset& preset);
+                                                   const Camera& camera, const RenderPreset& preset,
+                                                   const std::set<std::string>& names);
 
  private:
   /// All of the scene, or (when `only` is not empty) one structure.

@@ -153,14 +153,17 @@ std::uint64_t frameDigest(const frame::History& h, int frame) {
   return stateDigest(bolus, sizeof(bolus), d);
 }
 
-Prepared prepare(const frame::History& history, const RenderPreset& preset) {
+float unseenDetail_m(int height_px) {
+  return kFinest_px * kPictureHeight_m / static_cast<float>(height_px);
+}
+
+Prepared prepare(const frame::History& history, double creaseAngle_rad, float error_m) {
   Prepared p;
   p.digest = topologyDigest(history);
-  const float finest_m = kFinest_px * kPictureHeight_m / static_cast<float>(preset.height);
   for (const frame::StructureTrack& s : history.structures) {
     const std::vector<Vec3f> first = positionsAt(s, 0);
     p.meshes.push_back(
-        buildDrawMesh(simplified(s.triangles, first, finest_m), first, preset.creaseAngle_rad));
+        buildDrawMesh(simplified(s.triangles, first, error_m), first, creaseAngle_rad));
   }
   return p;
 }

@@ -19,7 +19,10 @@ struct Prepared {
   std::vector<DrawMesh> meshes;  ///< [structure]
 };
 std::uint64_t topologyDigest(const frame::History& history);
-Prepared prepare(const frame::History& history, const RenderPreset& preset);
+/// Nothing farther than `error_m` from the meshes of the history; 0: themselves.
+Prepared prepare(const frame::History& history, double creaseAngle_rad, float error_m);
+/// Smaller than what a picture of this height shows.
+float unseenDetail_m(int height_px);
 
 /// A structure, or the bolus, at the frame.
 struct Part {

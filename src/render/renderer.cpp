@@ -2,6 +2,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <set>
 
 #include "render/context.h"
 #include "render/draw_list.h"
@@ -11,19 +12,35 @@
 
 namespace swallowclip::render {
 
+namespace {
+/// One frame's geometry, shared by its views.
+struct Model {
+  float error_m = 0;
+  Prepared prepared;
+  FrameGeometry geometry;
+  GpuMesh mesh;
+  std::uint64_t digest = 0;  ///< of what `geometry` was made from; 0: of nothing yet
+
+  void update(const frame::History& history, int frame, const RenderPreset& preset) {
+    const std::uint64_t now = frameDigest(history, frame);
+    if (now == digest) return;
+    if (prepared.meshes.empty() || prepared.digest != topologyDigest(history))
+      prepared = prepare(history, preset.creaseAngle_rad, error_m);
+    geometry = frameGeometry(history, frame, prepared, preset);
+    mesh.uploadFrame(geometry.vertices);
+    digest = now;
+  }
+};
+}  // namespace
+
 struct Renderer::Impl {
   std::unique_ptr<Context> context;  // first: outlives everything made in it
   RenderPreset preset;
   SurfacePass surface;
   FluoroPass fluoro;
   PlainPass plain;
-  GpuMesh mesh;
-  Prepared prepared;
-  FrameGeometry geometry;
-  std::uint64_t geometryDigest = 0;  ///< of what `geometry` was made from; 0: of nothing yet
+  Model seen, exact;  ///< rays measure lengths, so that fluoroscopy takes the meshes as they are
   int triangles = 0;
-
-  void update(const frame::History& history, int frame);
 };
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -56,7 +73,8 @@ Result<Renderer> Renderer::create(const std::filesystem::path& shaderDir, Render
     return std::unexpected(ok.error());
   if (auto ok = impl->plain.create(shaderDir, impl->preset); !ok)
     return std::unexpected(ok.error());
-  impl->mesh.create();
+  impl->seen.error_m = unseenDetail_m(impl->preset.height);
+  for (Model* m : {&impl->seen, &impl->exact}) m->mesh.create();
   return Renderer(std::move(impl));
 }
 
@@ -86,20 +104,10 @@ std::string unusable(const frame::History& h, int frame) {
 }
 }  // namespace
 
-// The views of one frame share its geometry.
-void Renderer::Impl::update(const frame::History& history, int frame) {
-  const std::uint64_t digest = frameDigest(history, frame);
-  if (digest == geometryDigest) return;
-  if (prepared.meshes.empty() || prepared.digest != topologyDigest(history))
-    prepared = prepare(history, preset);
-  geometry = frameGeometry(history, frame, prepared, preset);
-  mesh.uploadFrame(geometry.vertices);
-  geometryDigest = digest;
-}
-
 // One frame as triangles and a camera, with the context current.
 struct Renderer::Scene {
   const ViewDef* view;
+  const GpuMesh* mesh;
   DrawList list;
   Camera camera;
 };
@@ -123,10 +131,11 @@ Result<Renderer::Scene> Renderer::prepareScene(const frame::History& history, in
   if (auto wrong = unusable(history, frame); !wrong.empty())
     return failure("history", wrong, "Simulate again.");
   if (auto ok = impl_->context->makeCurrent(); !ok) return std::unexpected(ok.error());
-  impl_->update(history, frame);
-  Scene s{&found->second,
-          buildDrawList(history, frame, impl_->geometry, preset, found->second), {}};
-  impl_->mesh.uploadView(s.list);
+  Model& model = found->second.style == Style::fluoro ? impl_->exact : impl_->seen;
+  model.update(history, frame, preset);
+  Scene s{&found->second, &model.mesh,
+          buildDrawList(history, frame, model.geometry, preset, found->second), {}};
+  model.mesh.uploadView(s.list);
   impl_->triangles =
       static_cast<int>(s.list.indices.size() + s.list.extra.size()) / 3;
   s.camera = makeCamera(found->second, preset.width, preset.height, s.list.bounds);
@@ -139,8 +148,8 @@ Result<Image> Renderer::draw(const frame::History& history, int frame, const std
   if (!scene) return std::unexpected(scene.error());
   const RenderPreset& preset = impl_->preset;
   auto image = scene->view->style == Style::fluoro
-                   ? impl_->fluoro.draw(impl_->mesh, scene->list, scene->camera, preset, frame)
-                   : impl_->surface.draw(impl_->mesh, scene->list, scene->camera, preset);
+                   ? impl_->fluoro.draw(*scene->mesh, scene->list, scene->camera, preset, frame)
+                   : impl_->surface.draw(*scene->mesh, scene->list, scene->camera, preset);
   if (!image) return image;
   CaptionText words = caption;
   if (words.viewLabel.empty()) words.viewLabel = scene->view->captionTitle;
@@ -153,23 +162,26 @@ Result<Image> Renderer::drawPlain(const frame::History& history, int frame,
                                   const std::string& view) {
   auto scene = prepareScene(history, frame, view);
   if (!scene) return std::unexpected(scene.error());
-  return impl_->plain.draw(impl_->mesh, scene->list, scene->camera);
+  return impl_->plain.draw(*scene->mesh, scene->list, scene->camera);
 }
 
 Result<FloatImage> Renderer::signal(const frame::History& history, int frame,
                                     const std::string& view) {
   auto scene = prepareScene(history, frame, view);
   if (!scene) return std::unexpected(scene.error());
-  return impl_->fluoro.signal(impl_->mesh, scene->list, scene->camera, impl_->preset, frame);
+  return impl_->fluoro.signal(*scene->mesh, scene->list, scene->camera, impl_->preset, frame);
 }
 
 Result<std::map<std::string, int>> Renderer::visiblePixels(const frame::History& history, int frame,
                                                            const std::string& view) {
   auto scene = prepareScene(history, frame, view);
   if (!scene) return std::unexpected(scene.error());
+  std::set<std::string> promised;
+  for (const auto& [structure, least] : scene->view->shows) promised.insert(structure);
   return scene->view->style == Style::fluoro
-             ? impl_->fluoro.visiblePixels(impl_->mesh, scene->list, scene->camera, impl_->preset)
-             : impl_->surface.visiblePixels(impl_->mesh, scene->list, scene->camera, impl_->preset);
+             ? impl_->fluoro.visiblePixels(*scene->mesh, scene->list, scene->camera, impl_->preset,
+                                           promised)
+             : impl_->surface.visiblePixels(*scene->mesh, scene->list, scene->camera, impl_->preset);
 }
 
 namespace {

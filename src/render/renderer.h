@@ -41,7 +41,8 @@ class Renderer {
   /// What the detector of a fluoroscopy view receives, relative to the open field, for measuring.
   Result<FloatImage> signal(const frame::History& history, int frame, const std::string& view);
 
-  /// Pixels in which each structure of a view is seen at a frame (without captions).
+  /// Pixels in which each structure of a view is seen at a frame (without captions); in
+  /// fluoroscopy only of those that the view promises.
   Result<std::map<std::string, int>> visiblePixels(const frame::History& history, int frame,
                                                    const std::string& view);
   /// What a view promises (ViewDef::shows) and does not keep at a frame.

@@ -55,7 +55,7 @@ TEST(DrawList, CutsHidesAndGhostsByName) {
   };
   const frame::History h = test::still(
       {ball("whole", 0), ball("half", 0), ball("gone", 0.02f), ball("away", 0), ball("glass", 0)});
-  const Prepared prepared = prepare(h, p);
+  const Prepared prepared = prepare(h, 0.87, 0);
   const FrameGeometry geometry = frameGeometry(h, 0, prepared, p);
   const DrawList list = buildDrawList(h, 0, geometry, p, v);
   ASSERT_EQ(list.solid.size(), 2u);

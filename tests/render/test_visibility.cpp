@@ -60,6 +60,7 @@ TEST(Visibility, FluoroscopyCountsContrastWithinTheBlades) {
   RenderPreset p = preset();
   p.views["side"].style = Style::fluoro;
   p.fluoro.fieldWidth_m = p.fluoro.fieldHeight_m = 0.05f;
+  p.views["side"].shows = {{"bone", 1}, {"flesh", 1}};
   auto r = Renderer::create(test::kShaders, p);
   ASSERT_TRUE(r.has_value());
   auto bone = test::box("bone", {-0.02f, 0, -0.02f}, {0.02f, 0.04f, 0.02f});
