@@ -6,7 +6,9 @@
 #include <chrono>
 #include <ctime>
 
+#include "core/file.h"
 #include "render/renderer.h"
+#include "video/png.h"
 
 namespace swallowclip::pipeline {
 namespace {
@@ -35,6 +37,13 @@ struct Row {
   Cost full, plain;
   int triangles = 0;  ///< most of any frame
 };
+
+// What was timed, for the eye.
+Result<void> keep(const Image& image, const std::filesystem::path& folder, const std::string& view,
+                  int frame) {
+  if (auto ready = prepareFolder(folder); !ready) return ready;
+  return video::writePng(image, folder / fmt::format("{}-{:04}.png", view, frame));
+}
 }  // namespace
 
 Result<void> benchDrawing(const RunOptions& o, const render::RenderPreset& preset,
@@ -48,11 +57,16 @@ Result<void> benchDrawing(const RunOptions& o, const render::RenderPreset& prese
     const int frame = std::max(k, 0) * (h.frames() - 1) / kFrames;
     for (const bool plain : {false, true})
       for (std::size_t v = 0; v < rows.size(); ++v) {
+        Image image;
         const auto cost = Cost::of([&] {
-          return plain ? renderer->drawPlain(h, frame, o.views[v])
-                       : renderer->draw(h, frame, o.views[v], words);
+          auto drawn = plain ? renderer->drawPlain(h, frame, o.views[v])
+                             : renderer->draw(h, frame, o.views[v], words);
+          if (drawn) image = std::move(*drawn);
+          return drawn;
         });
         if (!cost) return std::unexpected(cost.error());
+        if (k == kFrames / 2 && !plain)
+          if (auto kept = keep(image, o.out, o.views[v], frame); !kept) return kept;
         if (k >= 0) (plain ? rows[v].plain : rows[v].full).add(*cost);
         rows[v].triangles = std::max(rows[v].triangles, renderer->trianglesDrawn());
       }
