@@ -103,10 +103,14 @@ class Page {
   std::string differences() const {
     if (r_.changes.empty()) return "";
     std::string rows;
-    for (const Change& c : r_.changes)
+    std::set<std::string> told;  // views of one swallow have their measures in common
+    for (const Change& c : r_.changes) {
+      const std::string moved = fmt::format("{}", fmt::join(c.moved, "; "));
+      const bool again = !moved.empty() && !told.insert(moved).second;
       rows += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n", html(c.clip),
                           c.isNew ? "new" : fmt::format("{:.4f}", c.difference),
-                          html(fmt::format("{}", fmt::join(c.moved, "; "))));
+                          again ? "as above, in another view" : html(moved));
+    }
     return "<h2>Changed since the last night</h2>\n<table><tr><th>clip</th>"
            "<th>visible difference (0 none, 1 all)</th><th>measured values that moved</th></tr>\n" +
            rows + "</table>\n";
