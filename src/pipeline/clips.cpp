@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 
 #include "core/file.h"
 #include "pipeline/components.h"
@@ -85,20 +86,21 @@ std::string clipStem(const frame::Meta& m) {
   return fmt::format("{}-{}", m.swallow, m.bolus);
 }
 
-Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& preset,
-                            const frame::History& h, const scoring::Metrics& m,
-                            const std::filesystem::path& folder, const std::string& stem,
-                            Progress& progress) {
-  auto renderer = render::Renderer::create(o.data / "shaders", preset);
-  if (!renderer) return std::unexpected(renderer.error());
-  const std::vector<EventMark> marks = eventMarks(h, m);
-  render::CaptionText caption = captionFor(h, marks);
-  const std::string bolus = caption.subtitle;
-  std::vector<video::Chapter> chapters;
-  for (const EventMark& e : marks) chapters.push_back({e.name, e.time_s});
-  const int poster = posterFrame(h, m);
-  ClipTimes times;
-  // all views of a frame one after the other: they share its geometry
+namespace {
+// What all clips of a history have in common.
+struct Film {
+  const render::RenderPreset& preset;
+  const frame::History& history;
+  const scoring::Metrics& metrics;
+  std::filesystem::path folder;
+  std::string stem;
+  std::vector<EventMark> marks;
+};
+
+// All views of a frame one after the other: they share its geometry.
+Result<void> drawTogether(const Film& film, std::span<const std::string> views,
+                          render::Renderer& renderer, Progress& progress, ClipTimes& times) {
+  const frame::History& h = film.history;
   struct Clip {
     std::string view;
     std::filesystem::path path;
@@ -106,44 +108,69 @@ Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& pre
     Image poster;
   };
   std::vector<Clip> clips;
-  for (const std::string& view : o.views) {
+  for (const std::string& view : views) {
     video::Mp4Def def;
-    def.path = folder / fmt::format("{}-{}.mp4", stem, view);
-    def.width = preset.width;
-    def.height = preset.height;
+    def.path = film.folder / fmt::format("{}-{}.mp4", film.stem, view);
+    def.width = film.preset.width;
+    def.height = film.preset.height;
     def.rateNumerator = static_cast<int>(std::lround(h.meta.fps));
     auto sink = video::makeMp4Sink(def);
     if (!sink) return std::unexpected(sink.error());
     clips.push_back({view, def.path, std::move(*sink), {}});
   }
-  progress.stage(fmt::format("{}: drawing {}", stem, fmt::join(o.views, ", ")));
+  render::CaptionText caption = captionFor(h, film.marks);
+  const std::string bolus = caption.subtitle;
+  const int poster = posterFrame(h, film.metrics);
+  progress.stage(fmt::format("{}: drawing {}", film.stem, fmt::join(views, ", ")));
   for (int k = 0; k < h.frames(); ++k) {
     caption.time_s = h.time_s[k];
-    const std::string live = liveValue(h, m, k);
+    const std::string live = liveValue(h, film.metrics, k);
     caption.subtitle = live.empty() ? bolus : bolus + "  ·  " + live;
     for (Clip& clip : clips) {
       if (interrupted()) return std::unexpected(interruptedError());
       const double t0 = now_s();
-      auto image = renderer->draw(h, k, clip.view, caption);
+      auto image = renderer.draw(h, k, clip.view, caption);
       if (!image) return std::unexpected(image.error());
       const double t1 = now_s();
-      if (auto pushed = clip.sink->push(*image); !pushed) return std::unexpected(pushed.error());
+      if (auto pushed = clip.sink->push(*image); !pushed) return pushed;
       if (k == poster) clip.poster = std::move(*image);
       times.drawing_s += t1 - t0;
       times.encoding_s += now_s() - t1;
     }
     progress.update(static_cast<double>(k + 1) / h.frames());
   }
+  std::vector<video::Chapter> chapters;
+  for (const EventMark& e : film.marks) chapters.push_back({e.name, e.time_s});
   for (Clip& clip : clips) {
     const double t2 = now_s();
-    if (auto done = clip.sink->finish(); !done) return std::unexpected(done.error());
+    if (auto done = clip.sink->finish(); !done) return done;
     times.encoding_s += now_s() - t2;
     if (auto written = video::writePng(clip.poster, clip.path.replace_extension(".png")); !written)
-      return std::unexpected(written.error());
+      return written;
     if (auto written = video::writeVtt(chapters, h.frames() / h.meta.fps,
                                        clip.path.replace_extension(".vtt"));
         !written)
-      return std::unexpected(written.error());
+      return written;
+  }
+  return {};
+}
+}  // namespace
+
+Result<ClipTimes> drawClips(const RunOptions& o, const render::RenderPreset& preset,
+                            const frame::History& h, const scoring::Metrics& m,
+                            const std::filesystem::path& folder, const std::string& stem,
+                            Progress& progress) {
+  // an encoder of 1080p holds back some 200 MB of pictures
+  constexpr std::size_t kClipsAtOnce = 4;
+  auto renderer = render::Renderer::create(o.data / "shaders", preset);
+  if (!renderer) return std::unexpected(renderer.error());
+  const Film film{preset, h, m, folder, stem, eventMarks(h, m)};
+  ClipTimes times;
+  const std::span<const std::string> views(o.views);
+  for (std::size_t v = 0; v < views.size(); v += kClipsAtOnce) {
+    const auto some = views.subspan(v, std::min(kClipsAtOnce, views.size() - v));
+    if (auto drawn = drawTogether(film, some, *renderer, progress, times); !drawn)
+      return std::unexpected(drawn.error());
   }
   return times;
 }
