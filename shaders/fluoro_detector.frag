@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Quanta that a detector pixel counts, relative to the open field: Beer-Lambert primary, scatter,
 // collimator blades and quantum noise.
-// uDepth         sampler2D  optical depth, dimensionless
+// uDepth         sampler2D  optical depth, dimensionless; faces missed (fluoro_length.frag)
 // uScatter       sampler2D  blurred scatter source, 1/8 size
 // uScatterGain   float scatter to primary ratio over optical depth at the reference
 // uQuanta        float quanta of the open field in one pixel; 0 = no noise
@@ -35,10 +35,24 @@ float field(vec2 pixel) {
   return smoothstep(uField.w, -uField.w, outside);
 }
 
+// Where a face was missed, the mean of the neighbours where none was.
+float opticalDepth(ivec2 p) {
+  vec2 d = texelFetch(uDepth, p, 0).rg;
+  float sum = 0.0, n = 0.0;
+  ivec2 last = textureSize(uDepth, 0) - 1;
+  for (int k = 0; k < 9; ++k) {
+    vec2 q = texelFetch(uDepth, clamp(p + ivec2(k % 3, k / 3) - 1, ivec2(0), last), 0).rg;
+    float whole = float(abs(q.g) < 0.5);
+    sum += whole * q.r;
+    n += whole;
+  }
+  return abs(d.g) < 0.5 || n < 0.5 ? d.r : sum / n;
+}
+
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   float open = field(gl_FragCoord.xy);
-  float primary = exp(-texelFetch(uDepth, p, 0).r);
+  float primary = exp(-opticalDepth(p));
   float scatter = uScatterGain > 0.0 ? uScatterGain * texture(uScatter, vUv).r : 0.0;
   float signal = open * (primary + scatter);
   if (uQuanta > 0.0) {

@@ -11,10 +11,13 @@ layout(location = 0) out vec2 oScatterDepth;
 void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * 8, last = textureSize(uDepth, 0) - 1;
   vec2 sum = vec2(0.0);
+  float n = 0.0;
   for (int k = 0; k < 16; ++k) {
     ivec2 p = min(first + ivec2(2 * (k & 3), 2 * (k >> 2)), last);
-    float d = max(texelFetch(uDepth, p, 0).r, 0.0);
-    sum += vec2(d * exp(-d), d);
+    vec2 t = texelFetch(uDepth, p, 0).rg;
+    float d = max(t.r, 0.0), whole = float(abs(t.g) < 0.5);
+    sum += whole * vec2(d * exp(-d), d);
+    n += whole;
   }
-  oScatterDepth = sum / 16.0;
+  oScatterDepth = sum / max(n, 1.0);
 }

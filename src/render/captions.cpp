@@ -56,6 +56,8 @@ class Strip {
   Owned<cairo_t> cairo_;
 };
 
+constexpr double kSmallest = 0.6;  // of its size, that a long text may shrink to
+
 enum class Align { left, centre, right };
 
 struct Pen {
@@ -66,7 +68,8 @@ struct Pen {
     const Colour& c = def->colour_srgb;
     cairo_set_source_rgba(cairo, c.x(), c.y(), c.z(), alpha);
   }
-  /// Text with its top at y, cut with an ellipsis at maxWidth; returns the width used.
+  /// Text with its top at y, set smaller where it is wider than maxWidth and at last cut with an
+  /// ellipsis; returns the width used.
   double text(const std::string& raw, double x, double y, double size, double maxWidth, bool bold,
               float alpha, Align align) const {
     if (raw.empty()) return 0;
@@ -76,13 +79,16 @@ struct Pen {
     Owned<PangoLayout> layout(pango_cairo_create_layout(cairo));
     Owned<PangoFontDescription> font(pango_font_description_new());
     pango_font_description_set_family(font.get(), def->font.c_str());
-    pango_font_description_set_absolute_size(font.get(), std::round(size) * PANGO_SCALE);
     pango_font_description_set_weight(font.get(), bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
-    pango_layout_set_font_description(layout.get(), font.get());
     pango_layout_set_text(layout.get(), words.c_str(), static_cast<int>(words.size()));
     pango_layout_set_single_paragraph_mode(layout.get(), TRUE);
     pango_layout_set_width(layout.get(), static_cast<int>(maxWidth * PANGO_SCALE));
     pango_layout_set_ellipsize(layout.get(), PANGO_ELLIPSIZE_END);
+    for (double px = std::round(size);; --px) {
+      pango_font_description_set_absolute_size(font.get(), px * PANGO_SCALE);
+      pango_layout_set_font_description(layout.get(), font.get());
+      if (!pango_layout_is_ellipsized(layout.get()) || px - 1 < kSmallest * size) break;
+    }
     int w = 0, h = 0;
     pango_layout_get_pixel_size(layout.get(), &w, &h);
     const double shift = align == Align::left ? 0 : align == Align::right ? -w : -0.5 * w;

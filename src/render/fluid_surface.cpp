@@ -109,7 +109,7 @@ Blob freeBlob(int i, const std::vector<Vec3f>& p, const Neighbours& near, float 
   b.centre = p[i] + smoothing * std::min(1.0f, (weight - 1) / 3) * (mean - p[i]);
   b.toUnit = radii.cwiseInverse().asDiagonal() * axes.transpose();
   b.reach = (axes * radii.asDiagonal()).rowwise().norm();
-  b.amplitude = 1 / std::max(0.72f * kBulkSum, std::min(crowd, kBulkSum));
+  b.amplitude = 1 / std::max(0.85f * kBulkSum, std::min(crowd, kBulkSum));
   // a lone drop must not vanish: its own centre alone reaches past the level
   b.amplitude = std::max(b.amplitude, 0.75f / crowd);
   return b;

@@ -34,7 +34,7 @@ Result<void> FluoroPass::create(const std::filesystem::path& dir, const RenderPr
   const int w = preset.width, h = preset.height;
   const int sw = (w + kScatterShare - 1) / kScatterShare;
   const int sh = (h + kScatterShare - 1) / kScatterShare;
-  const Result<void> made[] = {depth_.create("fluoroscopy", w, h, GL_R32F, 0),
+  const Result<void> made[] = {depth_.create("fluoroscopy", w, h, GL_RG32F, 0),
                                scatterA_.create("scatter", sw, sh, GL_RG32F, 0),
                                scatterB_.create("scatter", sw, sh, GL_RG32F, 0),
                                signalA_.create("detector", w, h, GL_R32F, 0),

@@ -53,6 +53,19 @@ TEST(Captions, OffAndTinyPicturesAreFine) {
   EXPECT_TRUE(drawCaptions(tiny, {}, words()).has_value());
 }
 
+TEST(Captions, ALongTitleIsSetSmallerAndNotCut) {
+  CaptionDef def;
+  def.size_px = 15;
+  CaptionText one = words(), other = one;
+  one.title = "MBSImP component 10, score 0: the laryngeal vestibule closes whole a";
+  other.title = one.title;
+  other.title.back() = 'b';  // its last letter is seen
+  Image a(854, 480), b(854, 480);
+  ASSERT_TRUE(drawCaptions(a, def, one).has_value());
+  ASSERT_TRUE(drawCaptions(b, def, other).has_value());
+  EXPECT_GT(changed(a, b, 0, 60), 5);
+}
+
 TEST(Captions, AcceptsAnyText) {
   Image image(320, 180);
   CaptionText t = words();

@@ -100,6 +100,69 @@ TEST(KeepWithin, NothingIsDrawnBehindAWall) {
   EXPECT_GT(lowest(), -1e-6f);
 }
 
+// A ball of 5 mL at 2 mm spacing beside the sphere of its particles' volume.
+TEST(FluidSurface, ABallIsTheSphereOfItsVolume) {
+  const auto p = test::lattice({0, 0, 0}, Vec3f::Constant(0.0106f), kDx);
+  const double radius = std::cbrt(3.0 / (4 * kPi) * static_cast<double>(p.size())) * kDx;
+  const FluidSurface s = fluidSurface(freeParticles(p), {});
+  double square = 0, farthest = 0, tilt = 0;
+  for (std::size_t i = 0; i < s.positions.size(); ++i) {
+    const double off = s.positions[i].norm() - radius;
+    square += off * off / static_cast<double>(s.positions.size());
+    farthest = std::max(farthest, std::abs(off));
+    tilt += std::acos(std::min(1.0f, s.normals[i].dot(s.positions[i].normalized()))) /
+            static_cast<double>(s.positions.size());
+  }
+  std::fprintf(stderr, "ball of %.1f mm: %.2f mm rms, %.2f mm at most, normals %.1f deg off\n",
+               1e3 * radius, 1e3 * std::sqrt(square), 1e3 * farthest, tilt * 180 / kPi);
+  EXPECT_LT(std::sqrt(square), 0.15 * kDx);
+  EXPECT_LT(farthest, 0.5 * kDx);
+  EXPECT_LT(tilt * 180 / kPi, 12);
+}
+
+// Two blocks of fluid with flat faces and air between: once the gap is wider than a particle, it is
+// seen.
+TEST(FluidSurface, AGapWiderThanAParticleStaysOpen) {
+  const auto bridged = [](float gap) {  // between outermost particles
+    std::vector<FluidParticle> p;
+    for (int x = 0; x < 6; ++x)
+      for (int y = 0; y < 6; ++y)
+        for (int z = 0; z < 4; ++z)
+          for (float side : {-1.0f, 1.0f})
+            p.push_back({Vec3f(kDx * (static_cast<float>(x) - 2.5f), kDx * (static_cast<float>(y) - 2.5f),
+                               side * (0.5f * gap + kDx * static_cast<float>(z)))});
+    for (const Vec3f& x : fluidSurface(p, {}).positions)
+      if (x.head<2>().cwiseAbs().maxCoeff() < kDx && std::abs(x.z()) < 0.4f * gap) return false;
+    return true;  // no face towards the gap
+  };
+  EXPECT_TRUE(bridged(kDx));           // one fluid
+  EXPECT_FALSE(bridged(2.0f * kDx));   // a particle of air between them
+}
+
+// A sheet one particle thick beside the film of its volume.
+TEST(FluidSurface, AThinSheetIsWholeAndAsThickAsItsVolume) {
+  std::vector<Vec3f> p;
+  for (int x = -6; x <= 6; ++x)
+    for (int y = -6; y <= 6; ++y) p.push_back(kDx * Vec3f(static_cast<float>(x), static_cast<float>(y), 0));
+  const FluidSurface s = fluidSurface(freeParticles(p), {});
+  double mean = 0, least = 1, most = 0;
+  int n = 0;
+  for (const Vec3f& x : s.positions)
+    if (x.head<2>().cwiseAbs().maxCoeff() < 4 * kDx) {
+      const double half = std::abs(x.z());
+      mean += half;
+      least = std::min(least, half);
+      most = std::max(most, half);
+      ++n;
+    }
+  ASSERT_GT(n, 100);
+  mean *= 2.0 / n;
+  std::fprintf(stderr, "sheet of 2 mm: %.2f mm thick, %.2f to %.2f\n", 1e3 * mean, 2e3 * least,
+               2e3 * most);
+  EXPECT_NEAR(mean / kDx, 1.0, 0.25);
+  EXPECT_GT(least, 0.25 * kDx);  // no hole
+}
+
 TEST(FluidSurface, NothingFromNothing) {
   EXPECT_TRUE(fluidSurface({}, {}).triangles.empty());
 }
