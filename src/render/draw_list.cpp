@@ -146,7 +146,8 @@ void addFluoroscopy(DrawList& list, const frame::History& h, int frame, const Re
     for (const Triangle& t : triangles)
       for (int v : t)  // lengths need no normals
         vertices.push_back({positions[v], Vec3f::Zero(), positions[v]});
-    for (const Vec3f& p : positions) list.bounds.add(p);
+    for (const Vec3f& p : positions) item.bounds.add(p);
+    list.bounds.add(item.bounds);
     item.skin = append(list, vertices);
     return item;
   };

@@ -63,10 +63,16 @@ Result<void> FluoroPass::drawDepth(const DrawList& list, const Camera& camera,
     length_.set(clip, Eigen::Vector4f(0, 0, 0, 1));
   length_.set("uViewProj", camera.viewProjection);
   length_.set("uEye", camera.eye);
-  length_.set("uOrigin", 0.5f * (camera.near_m + camera.far_m) * camera.eye.w());
+  const float origin = 0.5f * (camera.near_m + camera.far_m) * camera.eye.w();
+  length_.set("uOrigin", origin);
   const auto add = [&](const DrawItem& item, double attenuation_per_m, double layer) {
     length_.set("uAttenuation", static_cast<float>(attenuation_per_m));
     length_.set("uLayer", static_cast<float>(layer));
+    const Vec3f middle = 0.5f * (item.bounds.low + item.bounds.high);
+    const float distance = camera.eye.w() > 0.5f ? (camera.eye.head<3>() - middle).norm() - origin
+                                                 : -camera.eye.head<3>().dot(middle);
+    const float half = 0.5f * (item.bounds.high - item.bounds.low).norm() + 1e-3f;
+    length_.set("uReach", Eigen::Vector2f(distance - half, distance + half));
     mesh_->draw(item);
   };
   for (const auto* items : {&list.solid, &list.ghost})
