@@ -5,10 +5,13 @@
 #include <gdcmReader.h>
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
 #include "core/file.h"
 #include "study/dicom_header.h"
@@ -50,6 +53,34 @@ Result<Coding> codingOf(const gdcm::TransferSyntax& syntax) {
 std::unexpected<Error> damaged(const std::string& what) {
   return refuse(what, "It is cut off or damaged: export it again.");
 }
+
+/// While it lives this process gets little more memory than a file of that size can fill: GDCM
+/// clears room for every length that a file claims before it looks whether so much is there, and a
+/// gigabyte of zeros takes half a second. Sanitizers reserve terabytes: no limit with them.
+class ParsingRoom {
+ public:
+  explicit ParsingRoom(std::uintmax_t file_bytes) {
+    ::getrlimit(RLIMIT_AS, &before_);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    constexpr std::uintmax_t kRoom_bytes = std::uintmax_t{32} << 20;  // assumed, range 8 to 500 MB
+    std::uintmax_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit less = before_;
+    less.rlim_cur = std::min<rlim_t>(
+        less.rlim_cur, pages * static_cast<std::uintmax_t>(::sysconf(_SC_PAGESIZE)) +
+                           3 * file_bytes + kRoom_bytes);
+    ::setrlimit(RLIMIT_AS, &less);
+#else
+    (void)file_bytes;
+#endif
+  }
+  ~ParsingRoom() { ::setrlimit(RLIMIT_AS, &before_); }
+  ParsingRoom(const ParsingRoom&) = delete;
+  ParsingRoom& operator=(const ParsingRoom&) = delete;
+
+ private:
+  rlimit before_{};
+};
 
 /// GDCM fills what a cut-off file lacks with zeros. Whether the pixels' end is really there: bytes
 /// of an element of the length that it reports (-1: of fragments, which end with a delimiter).
@@ -152,6 +183,8 @@ Result<void> DicomDecoder::State::read(const StudyDef& def) {
   reader.SetFileName(def.path.string().c_str());
   bool whole = false;
   try {
+    std::error_code ec;
+    const ParsingRoom room(std::filesystem::file_size(def.path, ec));
     whole = reader.Read();
   } catch (const std::exception&) {  // its text may quote the file
   }

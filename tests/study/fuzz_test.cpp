@@ -10,6 +10,14 @@
 
 #include "studies.h"
 
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/common_interface_defs.h>
+// No RLIMIT_AS with a sanitizer: this keeps claimed lengths from filling the machine instead.
+extern "C" const char* __asan_default_options() {
+  return "max_allocation_size_mb=64";
+}
+#endif
+
 namespace swallowclip::study {
 namespace {
 constexpr int kFrames = 4;
@@ -54,10 +62,27 @@ std::string mutated(std::string bytes, std::mt19937& random) {
   return bytes;
 }
 
-long peakMemory_kB() {
+[[maybe_unused]] long peakMemory_kB() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   return usage.ru_maxrss;
+}
+
+/// A decoder's process has no stderr: what its sanitizer finds goes to files, and only refused
+/// claims of memory may be found.
+void reportTo([[maybe_unused]] const std::filesystem::path& folder) {
+#if defined(__SANITIZE_ADDRESS__)
+  __sanitizer_set_report_path((folder / "report").c_str());
+#endif
+}
+std::string firstFinding(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!entry.path().filename().string().starts_with("report.")) continue;
+    const std::string report = readFile(entry.path()).value_or("unreadable");
+    std::filesystem::remove(entry.path());
+    if (report.find("allocation-size-too-big") == std::string::npos) return report;
+  }
+  return "";
 }
 
 struct Decoder {
@@ -98,6 +123,7 @@ TEST_P(Fuzz, ReadOrRefused) {
   // fewer for a quick look: SWALLOWCLIP_FUZZ_INPUTS
   const char* fewer = std::getenv("SWALLOWCLIP_FUZZ_INPUTS");
   const int inputs = fewer ? std::atoi(fewer) : kInputs;
+  reportTo(scratch.path());
   int read = 0, refused = 0, broke = 0;
   for (int i = 0; i < inputs; ++i) {
     std::mt19937 random(static_cast<unsigned>(i));
@@ -117,6 +143,7 @@ TEST_P(Fuzz, ReadOrRefused) {
     const double took_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     ASSERT_LT(took_s, kPatience_s) << "input " << i;
+    ASSERT_EQ(firstFinding(scratch.path()), "") << "input " << i;
   }
   fmt::print("{}: {} read, {} refused, of those {} ended their decoder's process\n", d.name, read,
              refused, broke);
