@@ -21,6 +21,10 @@ inline const ScoringRules& testRules() {
   return rules;
 }
 
+inline double ramp(double t, double a, double b) {
+  return std::clamp((t - a) / (b - a), 0.0, 1.0);
+}
+
 struct FakeSwallow {
   double duration_s = 3.2, fps = 30;
   double cue_s = 0;
@@ -170,5 +174,33 @@ inline FakeSwallow rockingSwallow(double onset_s, int cycles, double range_m, do
     return pushed_m(s0, sweep_m(t, sweep_s, v_ms)) + bolusRange_m * rock(t);
   };
   return f;
+}
+
+/// A landmark on a given course.
+inline void addLandmark(frame::History& h, const char* name, auto course) {
+  frame::LandmarkTrack track{name, {}};
+  for (double t : h.time_s) track.positions.push_back(Vec3(course(t)).cast<float>());
+  h.landmarks.push_back(track);
+}
+
+/// Channel along z downwards: the tongue in front (y = 0) and the wall behind it (y = gap).
+inline frame::History uprightPharynx(const std::function<double(double s_m, double t_s)>& gap_m,
+                              const std::function<double(double s_m, double t_s)>& wall_m,
+                              double duration_s = 2) {
+  FakeSwallow f;
+  f.duration_s = duration_s, f.particles = 0;
+  auto h = makeHistory(f);
+  const std::size_t half = h.skin.s_m.size() / 2;
+  for (int k = 0; k < h.frames(); ++k)
+    for (std::size_t v = 0; v < h.skin.s_m.size(); ++v) {
+      const double s = h.skin.s_m[v], t = h.time_s[k];
+      const double y = 0.030 - wall_m(s, t) - (v < half ? gap_m(s, t) : 0);
+      // s 92 lies at z = -39 and s 112 at -59, level with C2 and C3.
+      h.skin.positions[k][v] = Vec3(0.010 * h.skin.u[v], y, 0.053 - s).cast<float>();
+    }
+  addLandmark(h, "C2_anterior_inferior", [](double) { return Vec3(0, 0.035, -0.048); });
+  addLandmark(h, "C3_anterior_superior", [](double) { return Vec3(0, 0.035, -0.050); });
+  addLandmark(h, "C4_anterior_inferior", [](double) { return Vec3(0, 0.035, -0.085); });
+  return h;
 }
 }  // namespace swallowclip::scoring::testing

@@ -79,6 +79,13 @@ TEST_P(WithAndWithoutBolus, ThreeRockingCyclesAreScoreThree) {
   EXPECT_NEAR(value(m, "front_speed"), 112, 4);  // the last advance only
 }
 
+TEST(Component4, ThreeReversalsAreThree) {
+  // Two cycles that begin backwards; the last way forward goes over into the sweep.
+  const Metrics m = measured(rockingSwallow(0.92, 2, 0, -0.012, 0.112, 6), 3);
+  EXPECT_EQ(value(m, "reversals"), 3);
+  EXPECT_EQ(m.scores.at(4), 3) << formatTable(m);
+}
+
 TEST_P(WithAndWithoutBolus, TinyMotionIsScoreFour) {
   const Metrics m = measured(shaped(rockingSwallow(0.92, 3, 0.003, 0.001, 0.0, 6.6)), 4);
   expectScore(m, 4);

@@ -13,10 +13,6 @@ using namespace testing;
 
 constexpr double kFrame_s = 1.0 / 30;
 
-double ramp(double t, double a, double b) {
-  return std::clamp((t - a) / (b - a), 0.0, 1.0);
-}
-
 /// UES 8.6 mm from 1.4 to 1.6 s, shut from above by 1.9 s; pharynx narrowest at 1.75 s.
 double fullGap_m(double s, double t) {
   if (s > 0.1499) {
@@ -117,6 +113,23 @@ TEST(Events, WhatCannotBeJudgedSaysWhy) {
     EXPECT_FALSE(q.rule.empty()) << q.name;
   }
   for (int c = 1; c <= kComponents; ++c) EXPECT_FALSE(m.reasons.at(c).empty()) << c;
+}
+
+TEST(Events, VestibuleThatClosesAfter180Milliseconds) {
+  for (const double fps : {30.0, 60.0, 120.0}) {
+    FakeSwallow f = sweepSwallow(0.92, 0.140, 3.2);
+    f.gap_m = fullGap_m, f.fps = fps;
+    auto h = makeHistory(f);
+    addBody(h);
+    for (auto& l : h.landmarks)  // sealed below 3 % of 12 mm, 0.18 s after the burst at 1.2 s
+      for (std::size_t k = 0; l.name != "epiglottis_petiole" && k < h.time_s.size(); ++k)
+        l.positions[k].y() = static_cast<float>(
+            12 * kMm * (1 - ramp(h.time_s[k], 1.2, 1.2 + 0.18 / 0.97)) + 12 * kMm *
+                ramp(h.time_s[k], 1.9, 2.1));
+    const Metrics m = measure(h, testRules()).value();
+    EXPECT_NEAR(m.quantity("time_to_lvc")->value.value(), 0.18, 1.01 / fps) << fps << " frames/s";
+    EXPECT_NEAR(at(m, "LVC"), 1.38, 1.01 / fps);
+  }
 }
 
 TEST(Events, ClosureOfASeries) {
