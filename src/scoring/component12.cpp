@@ -18,7 +18,7 @@ constexpr std::array<const char*, kWallLevels> kLevels{"C2", "C3", "C4"};
 
 /// Tissue of the back wall at one level. It rises with the shortening pharynx.
 struct Level {
-  std::vector<double> way_m;     ///< [frame] forward of where the wall stood at the cue, same height
+  std::vector<double> way_m;  ///< [frame] forward of where the wall stood at the cue, same height
   std::vector<double> height_m;  ///< [frame] along the spine
 };
 

@@ -66,15 +66,17 @@ class ParsingRoom {
     std::uintmax_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
     rlimit less = before_;
-    less.rlim_cur = std::min<rlim_t>(
-        less.rlim_cur, pages * static_cast<std::uintmax_t>(::sysconf(_SC_PAGESIZE)) +
-                           3 * file_bytes + kRoom_bytes);
+    less.rlim_cur = std::min<rlim_t>(less.rlim_cur,
+                                     pages * static_cast<std::uintmax_t>(::sysconf(_SC_PAGESIZE)) +
+                                         3 * file_bytes + kRoom_bytes);
     ::setrlimit(RLIMIT_AS, &less);
 #else
     (void)file_bytes;
 #endif
   }
-  ~ParsingRoom() { ::setrlimit(RLIMIT_AS, &before_); }
+  ~ParsingRoom() {
+    ::setrlimit(RLIMIT_AS, &before_);
+  }
   ParsingRoom(const ParsingRoom&) = delete;
   ParsingRoom& operator=(const ParsingRoom&) = delete;
 

@@ -1,38 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The whole command on a study with known truth, and on one with planted identifiers.
+// Clocks and panes of the clip, and the whole command on a study with planted identifiers.
 #include "overlay/film.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <mutex>
-#include <nlohmann/json.hpp>
 
 #include "core/file.h"
-#include "overlay/overlay.h"
+#include "run.h"
 #include "scratch.h"
 #include "study/studies.h"
 #include "video/png.h"
-#include "video/video_reader.h"
 
 namespace swallowclip::overlay {
 namespace {
-class Said : public pipeline::Progress {
- public:
-  void stage(std::string_view name) override { add(name); }
-  void update(double) override {}
-  void print(std::string_view text) override { add(text); }
-  void note(std::string_view text) override { add(text); }
-  std::string lines;
-
- private:
-  void add(std::string_view line) {
-    const std::lock_guard lock(mutex_);
-    lines.append(line).append("\n");
-  }
-  std::mutex mutex_;
-};
-
 study::StudyInfo evenStudy(int frames, double rate_hz) {
   study::StudyInfo s;
   s.width = 320;
@@ -41,21 +22,6 @@ study::StudyInfo evenStudy(int frames, double rate_hz) {
   return s;
 }
 
-pipeline::RunOptions options(const test::Scratch& scratch) {
-  pipeline::RunOptions o;
-  o.data = SWALLOWCLIP_SOURCE_DIR;
-  o.bolus = "none";
-  o.preset = "small";
-  o.jobs = 2;
-  o.overlay.out = scratch / "clip.mp4";
-  return o;
-}
-
-nlohmann::json sideOf(const test::Scratch& scratch) {
-  auto text = readFile(scratch / "clip.json");
-  EXPECT_TRUE(text);
-  return nlohmann::json::parse(text.value_or("{}"));
-}
 }  // namespace
 
 TEST(Film, OutputRateShowsEveryFrameEquallyLong) {
@@ -96,49 +62,6 @@ TEST(Film, PanesFitThePicture) {
         EXPECT_TRUE(p.x >= 0 && p.y >= 0 && p.x + p.width <= 1280 && p.y + p.height <= 720);
       }
     }
-}
-
-// Acceptance, on the demonstration's truth: events within half a frame, 1 px RMS, 0.5 % scale, a
-// head that turns by 5 degrees followed.
-TEST(Film, DemonstrationAgreesWithItsTruth) {
-  test::Scratch scratch;
-  pipeline::RunOptions o = options(scratch);
-  o.overlay.demo = true;
-  o.overlay.layout = "superimposed";
-  Said said;
-  const auto done = overlay(o, said);
-  ASSERT_TRUE(done) << done.error().text();
-  const nlohmann::json side = sideOf(scratch);
-  EXPECT_LT(side["truth"]["rms_px"], 1.0);
-  EXPECT_LT(side["truth"]["scale_percent"], 0.5);
-  EXPECT_NEAR(side["truth"]["turned_deg"].get<double>(), 5, 0.7);
-  ASSERT_GE(side["events"].size(), 5u);
-  for (const auto& e : side["events"]) {
-    ASSERT_FALSE(e["retimed_s"].is_null()) << e;
-    EXPECT_NEAR(e["retimed_s"].get<double>(), e["study_s"].get<double>(), 0.5 / 30) << e;
-  }
-  EXPECT_EQ(side["study"]["warnings"].size(), 0u);
-  auto reader = video::VideoReader::open(scratch / "clip.mp4");
-  ASSERT_TRUE(reader);
-  EXPECT_EQ((*reader)->info().frames, side["frames"].get<int>());
-  auto vtt = readFile(scratch / "clip.vtt");
-  ASSERT_TRUE(vtt);
-  EXPECT_NE(vtt->find("HYB"), std::string::npos);
-  EXPECT_TRUE(video::readPng(scratch / "clip.png"));
-}
-
-TEST(Film, MovedMotionMeetsTheStudysEvents) {
-  test::Scratch scratch;
-  pipeline::RunOptions o = options(scratch);
-  o.overlay.demo = o.overlay.resimulate = true;
-  o.overlay.layout = "superimposed";
-  Said said;
-  const auto done = overlay(o, said);
-  ASSERT_TRUE(done) << done.error().text();
-  for (const auto& e : sideOf(scratch)["events"]) {  // measured anew, so a frame is the grain
-    if (e["retimed_s"].is_null()) continue;
-    EXPECT_NEAR(e["retimed_s"].get<double>(), e["study_s"].get<double>(), 1.01 / 30) << e;
-  }
 }
 
 namespace {

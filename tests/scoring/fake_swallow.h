@@ -185,8 +185,8 @@ inline void addLandmark(frame::History& h, const char* name, auto course) {
 
 /// Channel along z downwards: the tongue in front (y = 0) and the wall behind it (y = gap).
 inline frame::History uprightPharynx(const std::function<double(double s_m, double t_s)>& gap_m,
-                              const std::function<double(double s_m, double t_s)>& wall_m,
-                              double duration_s = 2) {
+                                     const std::function<double(double s_m, double t_s)>& wall_m,
+                                     double duration_s = 2) {
   FakeSwallow f;
   f.duration_s = duration_s, f.particles = 0;
   auto h = makeHistory(f);

@@ -123,9 +123,9 @@ TEST(Events, VestibuleThatClosesAfter180Milliseconds) {
     addBody(h);
     for (auto& l : h.landmarks)  // sealed below 3 % of 12 mm, 0.18 s after the burst at 1.2 s
       for (std::size_t k = 0; l.name != "epiglottis_petiole" && k < h.time_s.size(); ++k)
-        l.positions[k].y() = static_cast<float>(
-            12 * kMm * (1 - ramp(h.time_s[k], 1.2, 1.2 + 0.18 / 0.97)) + 12 * kMm *
-                ramp(h.time_s[k], 1.9, 2.1));
+        l.positions[k].y() =
+            static_cast<float>(12 * kMm * (1 - ramp(h.time_s[k], 1.2, 1.2 + 0.18 / 0.97)) +
+                               12 * kMm * ramp(h.time_s[k], 1.9, 2.1));
     const Metrics m = measure(h, testRules()).value();
     EXPECT_NEAR(m.quantity("time_to_lvc")->value.value(), 0.18, 1.01 / fps) << fps << " frames/s";
     EXPECT_NEAR(at(m, "LVC"), 1.38, 1.01 / fps);

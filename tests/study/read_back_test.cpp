@@ -137,6 +137,78 @@ INSTANTIATE_TEST_SUITE_P(All, DicomReadBack,
                                               std::get<2>(tested.param) ? "Colour" : "Grey");
                          });
 
+// Codings that we read and do not write: other programs make these files.
+TEST(DicomOfOthers, JpegLsAndLosslessJpeg) {
+  if (!hasProgram("gdcmconv")) GTEST_SKIP() << "gdcmconv is not installed";
+  test::Scratch scratch;
+  for (const bool colour : {false, true})
+    for (const char* coding : {"--jpegls", "--jpeg"}) {
+      DicomDef def;
+      def.path = scratch / "plain.dcm";
+      def.width = kWidth;
+      def.height = kHeight;
+      def.colour = colour;
+      def.coding = DicomCoding::uncompressed;
+      ASSERT_TRUE(writeDicom(def, kFrames));
+      const auto path = scratch / "study.dcm";
+      int status = 0;
+      const std::string said = output(
+          fmt::format("gdcmconv {} '{}' '{}'", coding, def.path.string(), path.string()), &status);
+      ASSERT_EQ(status, 0) << said;
+      auto study = Study::open({path});
+      ASSERT_TRUE(study) << coding << ": " << study.error().text();
+      ASSERT_EQ((*study)->info().frames(), kFrames);
+      for (int k = 0; k < kFrames; ++k) {
+        EXPECT_NEAR((*study)->info().time_s[k], k / 30.0, 1e-6);
+        auto image = (*study)->frame(k);
+        ASSERT_TRUE(image) << image.error().text();
+        EXPECT_EQ(difference(*image, fluoroPicture(kWidth, kHeight, k)).largest, 0) << coding;
+      }
+    }
+}
+
+TEST(DicomOfOthers, H264Stream) {
+  const std::string python = pythonWithPydicom();
+  if (python.empty() || !hasProgram("ffmpeg"))
+    GTEST_SKIP() << "pydicom, Pillow, numpy or ffmpeg is not installed";
+  test::Scratch scratch;
+  DicomDef def;
+  def.path = scratch / "study.dcm";
+  def.width = kWidth;
+  def.height = kHeight;
+  def.coding = DicomCoding::uncompressed;
+  std::ofstream(scratch / "wrap.py") << R"(
+import sys, pydicom
+from pydicom.encaps import encapsulate
+d = pydicom.dcmread(sys.argv[1])
+d.PixelData = encapsulate([open(sys.argv[2], 'rb').read()])
+d['PixelData'].VR, d['PixelData'].is_undefined_length = 'OB', True
+d.PhotometricInterpretation = 'YBR_PARTIAL_420'
+d.file_meta.TransferSyntaxUID = '1.2.840.10008.1.2.4.102'
+d.save_as(sys.argv[1])
+)";
+  // PS3.5 8.2.7: a bare stream, or an MP4 file
+  for (const char* stream : {"s.h264", "s.mp4"}) {
+    ASSERT_TRUE(writeDicom(def, kFrames));
+    writeVideo(scratch / stream, kWidth, kHeight, kFrames, "30",
+               "-c:v libx264 -crf 12 -pix_fmt yuv420p");
+    int status = 0;
+    const std::string said =
+        output(fmt::format("{} '{}' '{}' '{}'", python, (scratch / "wrap.py").string(),
+                           def.path.string(), (scratch / stream).string()),
+               &status);
+    ASSERT_EQ(status, 0) << said;
+    auto study = Study::open({def.path});
+    ASSERT_TRUE(study) << stream << ": " << study.error().text();
+    ASSERT_EQ((*study)->info().frames(), kFrames);
+    for (const int k : {0, 5, 11, 3}) {
+      auto image = (*study)->frame(k);
+      ASSERT_TRUE(image) << image.error().text();
+      EXPECT_LE(difference(*image, fluoroPicture(kWidth, kHeight, k)).mean, 1.5) << k;
+    }
+  }
+}
+
 namespace {
 struct VideoCase {
   const char* name;
