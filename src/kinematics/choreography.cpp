@@ -12,7 +12,10 @@ namespace {
 constexpr double kOralShoulder_m = 14e-3, kPharyngealShoulder_m = 16e-3;
 constexpr double kSidesLead_m = 10e-3;     // lateral walls shut ahead of the midline; assumed 5-15
 constexpr double kLarynxForwardGap = 1.0;  // share of anterior larynx travel that opens the lumen
-constexpr double kInvertedTip_m = 0.114;   // where the epiglottis meets the arytenoids; assumed
+constexpr double kInvertedTip_m = 0.127;   // where the inverted epiglottis ends; assumed 0.12-0.13
+// Share of that way by which the tongue's end follows it, so that the little tissue between them is
+// not stretched until it cuts through the posterior wall's bulge; assumed 0.3-0.5.
+constexpr double kTongueEndFollows = 0.3;
 constexpr double kArytenoidTilt_rad = 0.35;  // 20 degrees forward at closure; assumed 15-30
 // What is left open behind the contact front. Zones along s: tongue base, lateral walls.
 constexpr double kSideSlit_m =
@@ -194,13 +197,14 @@ anatomy::LumenPose Choreography::lumenPose(double t) const {
   const double shut = tip + 2e-4;
   const double arytenoid = arytenoidFree + closure * (shut - arytenoidFree);
   const double end = d.length_m;
-  const Curve sigmaM = identityExcept({{0.099, 0.099},
-                                       {d.tongueEnd_m, d.tongueEnd_m},
-                                       {d.epiglottisTip_m, tip},
-                                       {d.arytenoid_m, std::max(arytenoid, shut)},
-                                       {d.uesStart_m, std::max(d.uesStart_m - up, shut + 5e-3)},
-                                       {0.185, 0.185 - 0.8 * up}},
-                                      end);
+  const Curve sigmaM = identityExcept(
+      {{0.099, 0.099},
+       {d.tongueEnd_m, d.tongueEnd_m + kTongueEndFollows * (tip - d.epiglottisTip_m)},
+       {d.epiglottisTip_m, tip},
+       {d.arytenoid_m, std::max(arytenoid, shut)},
+       {d.uesStart_m, std::max(d.uesStart_m - up, shut + 5e-3)},
+       {0.185, 0.185 - 0.8 * up}},
+      end);
   const double lift = track("shortening", tau);
   const Curve sigmaF = identityExcept(
       {{0.090, 0.090}, {d.uesStart_m, d.uesStart_m - lift}, {0.185, 0.185 - 0.8 * lift}}, end);

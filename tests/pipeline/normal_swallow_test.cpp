@@ -54,10 +54,11 @@ TEST_F(NormalSwallow, IsWhatTheRulesCallNormal) {
   for (const char* name : {"wall_excursion_2", "wall_excursion_3", "wall_excursion_4",
                            "shortening_ratio", "hyoid_anterior_ratio"})
     EXPECT_NEAR(value(name), 1, 0.15) << name;
-  for (int component : {4, 8, 9, 11, 13, 14, 15}) {
+  for (int component : {4, 8, 9, 10, 11, 12, 13, 14, 15}) {
     EXPECT_EQ(metrics.scores.at(component), 0)
         << component << ": " << metrics.reasons.at(component);
-    EXPECT_FALSE(metrics.ambiguous.at(component)) << component;
+    // The epiglottis is folded to 123 degrees, 7 % beyond inverted.
+    EXPECT_EQ(metrics.ambiguous.at(component), component == 10) << component;
   }
 }
 }  // namespace
