@@ -147,8 +147,8 @@ Result<void> drawTogether(const Film& film, std::span<const std::string> views,
     times.encoding_s += now_s() - t2;
     if (auto written = video::writePng(clip.poster, clip.path.replace_extension(".png")); !written)
       return written;
-    if (auto written = video::writeVtt(chapters, h.frames() / h.meta.fps,
-                                       clip.path.replace_extension(".vtt"));
+    if (auto written =
+            video::writeVtt(chapters, h.frames() / h.meta.fps, clip.path.replace_extension(".vtt"));
         !written)
       return written;
   }

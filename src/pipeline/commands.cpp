@@ -193,8 +193,9 @@ Result<void> checkViews(const RunOptions& o, const std::filesystem::path& run, P
   auto renderer = render::Renderer::create(o.data / "shaders", *preset);
   if (!renderer) return std::unexpected(renderer.error());
   progress.stage(run.string());
-  using Worst = std::map<std::string, std::pair<render::Loss, int>>;  // by structure, with its frame
-  std::map<std::string, Worst> worst;                                 // by view
+  using Worst =
+      std::map<std::string, std::pair<render::Loss, int>>;  // by structure, with its frame
+  std::map<std::string, Worst> worst;                       // by view
   for (int k = 0; k < history->frames(); ++k) {
     for (const auto& [view, def] : preset->views) {
       if (interrupted()) return std::unexpected(interruptedError());

@@ -23,9 +23,9 @@ struct Cost {
     const auto wall = std::chrono::steady_clock::now();
     const std::clock_t cpu = std::clock();
     if (auto drawn = draw(); !drawn) return std::unexpected(drawn.error());
-    return Cost{1e3 * static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC,
-                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - wall)
-                    .count()};
+    return Cost{
+        1e3 * static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC,
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - wall).count()};
   }
   void add(const Cost& c) {
     cpu_ms += c.cpu_ms / kFrames;
@@ -76,9 +76,10 @@ Result<void> benchDrawing(const RunOptions& o, const render::RenderPreset& prese
       fmt::format("{}: {} x {}, {} frames, milliseconds of processor time per frame\n", preset.name,
                   preset.width, preset.height, kFrames);
   const auto line = [&](const std::string& name, int triangles, const Row& r) {
-    text += fmt::format("{:10} {:6} triangles  {:6.1f}  plain {:5.1f}  {:4.1f} times  {:5.1f} frames/s\n",
-                        name, triangles, r.full.cpu_ms, r.plain.cpu_ms,
-                        r.full.cpu_ms / r.plain.cpu_ms, 1e3 / r.full.wall_ms);
+    text += fmt::format(
+        "{:10} {:6} triangles  {:6.1f}  plain {:5.1f}  {:4.1f} times  {:5.1f} frames/s\n", name,
+        triangles, r.full.cpu_ms, r.plain.cpu_ms, r.full.cpu_ms / r.plain.cpu_ms,
+        1e3 / r.full.wall_ms);
   };
   Row mean;
   for (std::size_t v = 0; v < rows.size(); ++v) {

@@ -83,7 +83,7 @@ struct RunOptions {
   std::filesystem::path map;         ///< import: mapping file
   std::string topic;                 ///< list: components, scores, views, presets, boluses, scenes
   std::vector<std::filesystem::path> files;  ///< check, verify
-  bool bench = false;  ///< draw: time the frames instead
+  bool bench = false;                        ///< draw: time the frames instead
   VerifyOptions verify;
   OverlayOptions overlay;
   LibraryOptions library;

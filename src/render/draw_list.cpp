@@ -162,9 +162,10 @@ void addFluoroscopy(DrawList& list, const frame::History& h, int frame, const Re
 
 // Metres that a pixel spans about the middle of what is shown.
 float pixelSize_m(const ViewDef& view, const RenderPreset& preset) {
-  const double height = view.projection == Projection::orthographic
-                            ? view.orthoHeight_m
-                            : 2 * std::tan(0.5 * view.fovY_rad) * (view.eye_m - view.target_m).norm();
+  const double height =
+      view.projection == Projection::orthographic
+          ? view.orthoHeight_m
+          : 2 * std::tan(0.5 * view.fovY_rad) * (view.eye_m - view.target_m).norm();
   return static_cast<float>(height) / static_cast<float>(preset.height);
 }
 }  // namespace

@@ -39,7 +39,7 @@ struct DrawItem {
   float opacity = 1;
   bool closed = false;  ///< its back faces never show, but for uncapped cuts
   Range mesh;
-  Soup skin;  ///< instead of `mesh`: what only fluoroscopy sees
+  Soup skin;                      ///< instead of `mesh`: what only fluoroscopy sees
   std::vector<CutPlane> cuts;     ///< at most 3, those that touch the mesh
   std::vector<Section> sections;  ///< [cut]
   Bounds bounds;

@@ -52,8 +52,7 @@ void mixHalf(const Walk& w, std::ptrdiff_t first, std::ptrdiff_t step, double ha
              std::vector<Mix>& out) {
   for (int k = 0; k < half; ++k, first += step) {
     const double a = k, b = std::min(k + 1.0, half);
-    const int share =
-        static_cast<int>(255 * 0.5 * ((b - a) - (b * b - a * a) / (2 * half)) + 0.5);
+    const int share = static_cast<int>(255 * 0.5 * ((b - a) - (b * b - a * a) / (2 * half)) + 0.5);
     const std::ptrdiff_t other = first + w.across;
     out.push_back(side < 0 ? Mix{first, other, share} : Mix{other, first, share});
   }

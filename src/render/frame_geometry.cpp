@@ -29,8 +29,8 @@ std::vector<Triangle> simplified(const std::vector<Triangle>& triangles,
   std::vector<Triangle> out;
   out.reserve(kept.size() / 3);
   for (std::size_t i = 0; i < kept.size(); i += 3)
-    out.push_back({static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]),
-                   static_cast<int>(kept[i + 2])});
+    out.push_back(
+        {static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]), static_cast<int>(kept[i + 2])});
   return out;
 }
 

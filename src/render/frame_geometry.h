@@ -27,10 +27,10 @@ float unseenDetail_m(int height_px);
 /// A structure, or the bolus, at the frame.
 struct Part {
   std::string name;
-  std::string substance;               ///< material name as in the scene
-  const Material* material = nullptr;  ///< lives in the preset
-  bool closed = false;                 ///< closed 2-manifold facing outward
-  int firstVertex = 0;                 ///< in FrameGeometry::vertices
+  std::string substance;                   ///< material name as in the scene
+  const Material* material = nullptr;      ///< lives in the preset
+  bool closed = false;                     ///< closed 2-manifold facing outward
+  int firstVertex = 0;                     ///< in FrameGeometry::vertices
   std::span<const std::uint32_t> indices;  ///< 3 per triangle, from firstVertex on
   std::span<const Triangle> triangles;     ///< of `positions`
   std::vector<Vec3f> positions;

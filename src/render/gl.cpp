@@ -34,7 +34,8 @@ Result<GLuint> compile(const std::filesystem::path& file, GLenum stage,
   const std::size_t version = source->find("#version");
   if (const std::size_t end = source->find('\n', version);
       !define.empty() && version != std::string::npos && end != std::string::npos) {
-    const auto line = 2 + std::count(source->begin(), source->begin() + static_cast<std::ptrdiff_t>(end), '\n');
+    const auto line =
+        2 + std::count(source->begin(), source->begin() + static_cast<std::ptrdiff_t>(end), '\n');
     source->insert(end + 1, fmt::format("#define {}\n#line {}\n", define, line));
   }
   const GLuint id = glCreateShader(stage);
@@ -127,8 +128,7 @@ Result<void> Target::create(const char* what, int width, int height, GLenum colo
                          0);
   }
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    return failure(what,
-                   fmt::format("no framebuffer of {} x {}", width, height),
+    return failure(what, fmt::format("no framebuffer of {} x {}", width, height),
                    "Choose a smaller size in the preset.");
   return {};
 }

@@ -133,11 +133,12 @@ Result<Renderer::Scene> Renderer::prepareScene(const frame::History& history, in
   if (auto ok = impl_->context->makeCurrent(); !ok) return std::unexpected(ok.error());
   Model& model = found->second.style == Style::fluoro ? impl_->exact : impl_->seen;
   model.update(history, frame, preset);
-  Scene s{&found->second, &model.mesh,
-          buildDrawList(history, frame, model.geometry, preset, found->second), {}};
+  Scene s{&found->second,
+          &model.mesh,
+          buildDrawList(history, frame, model.geometry, preset, found->second),
+          {}};
   model.mesh.uploadView(s.list);
-  impl_->triangles =
-      static_cast<int>(s.list.indices.size() + s.list.extra.size()) / 3;
+  impl_->triangles = static_cast<int>(s.list.indices.size() + s.list.extra.size()) / 3;
   s.camera = makeCamera(found->second, preset.width, preset.height, s.list.bounds);
   return s;
 }
@@ -181,7 +182,8 @@ Result<std::map<std::string, int>> Renderer::visiblePixels(const frame::History&
   return scene->view->style == Style::fluoro
              ? impl_->fluoro.visiblePixels(*scene->mesh, scene->list, scene->camera, impl_->preset,
                                            promised)
-             : impl_->surface.visiblePixels(*scene->mesh, scene->list, scene->camera, impl_->preset);
+             : impl_->surface.visiblePixels(*scene->mesh, scene->list, scene->camera,
+                                            impl_->preset);
 }
 
 namespace {

@@ -53,8 +53,8 @@ Image makeBackground(const RenderPreset& preset) {
     for (int x = 0; x < image.width; ++x) {
       const float noise = static_cast<float>((x * 5 + y * 3) & 7) / 8 - 0.4375f;
       for (int k = 0; k < 3; ++k)
-        image.row(y)[4 * x + k] = static_cast<std::uint8_t>(
-            std::clamp(std::lround(255 * sky[k] + noise), 0L, 255L));
+        image.row(y)[4 * x + k] =
+            static_cast<std::uint8_t>(std::clamp(std::lround(255 * sky[k] + noise), 0L, 255L));
       image.row(y)[4 * x + 3] = 0;
     }
   }
@@ -213,7 +213,8 @@ void SurfacePass::drawCaps(const DrawItem& item, const Camera& camera, float id)
 void SurfacePass::drawOutlines(const DrawItem& item, const Camera& camera,
                                const RenderPreset& preset, float alpha) {
   for (int k = 0; k < static_cast<int>(item.sections.size()); ++k) {
-    if (item.sections[k].outline.count == 0 || !camera.sees(item.cuts[k].normal, item.cuts[k].offset))
+    if (item.sections[k].outline.count == 0 ||
+        !camera.sees(item.cuts[k].normal, item.cuts[k].offset))
       continue;
     const float keep = 1 - preset.sectionOutlineDarkness;
     flat_.use();
@@ -281,8 +282,8 @@ void SurfacePass::drawOcclusion(const Camera& camera, const RenderPreset& preset
   ao_.use();
   ao_.set("uNearFar", Vec3f(camera.near_m, camera.far_m, camera.eye.w()));
   ao_.set("uTanHalf", Eigen::Vector2f(1 / camera.projection(0, 0), 1 / camera.projection(1, 1)));
-  ao_.set("uSize", Eigen::Vector2f(static_cast<float>(preset.width),
-                                   static_cast<float>(preset.height)));
+  ao_.set("uSize",
+          Eigen::Vector2f(static_cast<float>(preset.width), static_cast<float>(preset.height)));
   ao_.set("uShare", kAoShare);
   ao_.set("uPixelsPerMetre", camera.pixelsPerMetre);
   ao_.set("uRadius", preset.ao.radius_m);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every view of the real scene at rest, with its bolus, beside the picture kept in golden/. After an
-// intended change of looks: SWALLOWCLIP_BLESS=1 build/tests/pipeline/test_pipeline
+// Every view of the real scene at rest, with its bolus, beside the picture kept in golden/. After
+// an intended change of looks: SWALLOWCLIP_BLESS=1 build/tests/pipeline/test_pipeline
 // --gtest_filter='Golden*', and look at what has changed before keeping it.
 #include <cstdlib>
 
@@ -15,9 +15,9 @@ namespace {
 
 const std::filesystem::path kGolden = SWALLOWCLIP_SOURCE_DIR "/tests/pipeline/golden";
 // Other processors round otherwise: some levels along edges, nothing that a person sees.
-constexpr double kMeanLevels = 0.5;      // of 255, mean of all channels
-constexpr int kClearLevels = 32;         // a change that is seen ...
-constexpr double kClearShare = 0.002;    // ... in this share of the pixels at most
+constexpr double kMeanLevels = 0.5;    // of 255, mean of all channels
+constexpr int kClearLevels = 32;       // a change that is seen ...
+constexpr double kClearShare = 0.002;  // ... in this share of the pixels at most
 
 struct Difference {
   double meanLevels = 0, clearShare = 0;
@@ -69,7 +69,8 @@ TEST_F(Golden, EveryViewLooksAsItDidAndShowsWhatItPromises) {
     ASSERT_EQ(golden->rgba.size(), image->rgba.size()) << view;
     const Difference d = between(*image, *golden);
     const bool same = d.meanLevels <= kMeanLevels && d.clearShare <= kClearShare;
-    if (!same) (void)video::writePng(*image, std::filesystem::path(testing::TempDir()) / (view + ".png"));
+    if (!same)
+      (void)video::writePng(*image, std::filesystem::path(testing::TempDir()) / (view + ".png"));
     EXPECT_TRUE(same) << view << ": mean " << d.meanLevels << " levels (at most " << kMeanLevels
                       << "), clearly changed " << 100 * d.clearShare << " % of the pixels (at most "
                       << 100 * kClearShare << " %); the new picture lies in " << testing::TempDir();

@@ -63,8 +63,8 @@ struct Errors {
     four += error(sampled(s, kFour), truth) / shapes;
   }
   void print(const char* what) const {
-    std::fprintf(stderr, "%s: levels of 255 from the truth %.1f; four samples %.1f; one %.1f\n", what,
-                 ours, four, one);
+    std::fprintf(stderr, "%s: levels of 255 from the truth %.1f; four samples %.1f; one %.1f\n",
+                 what, ours, four, one);
   }
 };
 

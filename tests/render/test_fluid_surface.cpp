@@ -129,21 +129,23 @@ TEST(FluidSurface, AGapWiderThanAParticleStaysOpen) {
       for (int y = 0; y < 6; ++y)
         for (int z = 0; z < 4; ++z)
           for (float side : {-1.0f, 1.0f})
-            p.push_back({Vec3f(kDx * (static_cast<float>(x) - 2.5f), kDx * (static_cast<float>(y) - 2.5f),
-                               side * (0.5f * gap + kDx * static_cast<float>(z)))});
+            p.push_back(
+                {Vec3f(kDx * (static_cast<float>(x) - 2.5f), kDx * (static_cast<float>(y) - 2.5f),
+                       side * (0.5f * gap + kDx * static_cast<float>(z)))});
     for (const Vec3f& x : fluidSurface(p, {}).positions)
       if (x.head<2>().cwiseAbs().maxCoeff() < kDx && std::abs(x.z()) < 0.4f * gap) return false;
     return true;  // no face towards the gap
   };
-  EXPECT_TRUE(bridged(kDx));           // one fluid
-  EXPECT_FALSE(bridged(2.0f * kDx));   // a particle of air between them
+  EXPECT_TRUE(bridged(kDx));          // one fluid
+  EXPECT_FALSE(bridged(2.0f * kDx));  // a particle of air between them
 }
 
 // A sheet one particle thick beside the film of its volume.
 TEST(FluidSurface, AThinSheetIsWholeAndAsThickAsItsVolume) {
   std::vector<Vec3f> p;
   for (int x = -6; x <= 6; ++x)
-    for (int y = -6; y <= 6; ++y) p.push_back(kDx * Vec3f(static_cast<float>(x), static_cast<float>(y), 0));
+    for (int y = -6; y <= 6; ++y)
+      p.push_back(kDx * Vec3f(static_cast<float>(x), static_cast<float>(y), 0));
   const FluidSurface s = fluidSurface(freeParticles(p), {});
   double mean = 0, least = 1, most = 0;
   int n = 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -206,29 +205,6 @@ TEST(Shaders, AnErrorCarriesTheCompilersWords) {
   ASSERT_FALSE(r.has_value());
   EXPECT_TRUE(r.error().place.ends_with("ao.frag:2")) << r.error().place;
   fs::remove_all(copy);
-}
-
-double cpu_ms() {
-  return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-// Processor time of all threads, so that a busy machine measures the same.
-TEST(Renderer, FrameCost) {
-  auto h = busyScene(50);  // 4 x 9,800 triangles
-  RenderPreset p = fullPreset(1280, 720);
-  auto r = Renderer::create(test::kShaders, p);
-  ASSERT_TRUE(r.has_value());
-  const int frames = 5;
-  const auto cost = [&](const auto& draw) {
-    EXPECT_TRUE(draw().has_value());  // compiles
-    const double begin = cpu_ms();
-    for (int i = 0; i < frames; ++i) EXPECT_TRUE(draw().has_value());
-    return (cpu_ms() - begin) / frames;
-  };
-  const double full = cost([&] { return r->draw(h, 0, "oblique", {}); });
-  const double plain = cost([&] { return r->drawPlain(h, 0, "oblique"); });
-  std::fprintf(stderr, "39,200 triangles, 1280 x 720: %.0f ms, plain %.0f ms: %.1f times (%s)\n",
-               full, plain, full / plain, r->description().c_str());
 }
 }  // namespace
 }  // namespace swallowclip::render
