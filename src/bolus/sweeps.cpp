@@ -129,17 +129,34 @@ SC_INLINE F8 steepness(const PairLists& p, int e) {
   return root(x * x + y * y + z * z);
 }
 
+struct Tensor8 {
+  F8 xx, yy, zz, xy, xz, yz;
+};
+SC_INLINE F8 twice(const Tensor8& t, F8 x, F8 y, F8 z) {  // n.T.n
+  return x * x * t.xx + y * y * t.yy + z * z * t.zz +
+         all(2) * (x * y * t.xy + x * z * t.xz + y * z * t.yz);
+}
+
 SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
+  const auto& b = s.evenness->of;
   for (int i = begin; i < end; ++i) {
-    const F8 mu = all(s.viscosity[i]), even = all(s.evenness[i]);
+    const F8 mu = all(s.viscosity[i]);
+    const Tensor8 own{all(b[0][i]), all(b[1][i]), all(b[2][i]),
+                      all(b[3][i]), all(b[4][i]), all(b[5][i])};
     F8 total = all(0);
     for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
       const int* at = s.pairs.index + e;
       const F8 other = gather(s.viscosity, at), r = load(s.r + e);
+      const F8 x = load(s.pairs.gx + e), y = load(s.pairs.gy + e), z = load(s.pairs.gz + e);
+      const F8 square = x * x + y * y + z * z;
+      const Tensor8 both2{own.xx + gather(b[0].data(), at), own.yy + gather(b[1].data(), at),
+                          own.zz + gather(b[2].data(), at), own.xy + gather(b[3].data(), at),
+                          own.xz + gather(b[4].data(), at), own.yz + gather(b[5].data(), at)};
+      const F8 even = largest(all(2 * s.leastEven),
+                              twice(both2, x, y, z) / largest(square, all(1e-30f)));
       // harmonic: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
       const F8 both = largest(all(s.leastPair), all(2) * mu * other / (mu + other));
-      const F8 c = all(s.scale) * both * (even + gather(s.evenness, at)) * steepness(s.pairs, e) *
-                   r / (r * r + all(s.eta2));
+      const F8 c = all(s.scale) * both * even * root(square) * r / (r * r + all(s.eta2));
       store(s.c + e, c);
       total += c;
     }
@@ -147,12 +164,26 @@ SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
   }
 }
 
-SC_CLONES void evennessOf(const EvennessSweep& s, int begin, int end) {
+SC_CLONES void momentOf(const MomentSweep& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
-    F8 total = all(0);
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes)
-      total += steepness(s.pairs, e) * load(s.r + e);
-    s.evenness[i] = 3 / std::max(3 * s.least, sum(total) + 3 * s.wall[i]);
+    Tensor8 t{all(0), all(0), all(0), all(0), all(0), all(0)};
+    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+      const F8 x = load(s.pairs.gx + e), y = load(s.pairs.gy + e), z = load(s.pairs.gz + e);
+      const F8 w = load(s.r + e) / largest(root(x * x + y * y + z * z), all(1e-30f));
+      t.xx += w * x * x;
+      t.yy += w * y * y;
+      t.zz += w * z * z;
+      t.xy += w * x * y;
+      t.xz += w * x * z;
+      t.yz += w * y * z;
+    }
+    auto& m = s.moment->of;
+    m[0][i] += sum(t.xx);
+    m[1][i] += sum(t.yy);
+    m[2][i] += sum(t.zz);
+    m[3][i] += sum(t.xy);
+    m[4][i] += sum(t.xz);
+    m[5][i] += sum(t.yz);
   }
 }
 
@@ -205,8 +236,8 @@ void GradientSweep::run(int begin, int end) const {
 void PairViscositySweep::run(int begin, int end) const {
   pairViscosity(*this, begin, end);
 }
-void EvennessSweep::run(int begin, int end) const {
-  evennessOf(*this, begin, end);
+void MomentSweep::run(int begin, int end) const {
+  momentOf(*this, begin, end);
 }
 void StressSweep::run(int begin, int end) const {
   stress(*this, begin, end);

@@ -84,22 +84,30 @@ struct GradientSweep {
   void run(int begin, int end) const;
 };
 
-/// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu harmonic and at least leastPair, even
-/// the mean; diagonal_i = sum c_ij.
+/// A symmetric tensor per slot: xx yy zz xy xz yz.
+struct Tensors {
+  std::vector<float> of[6];
+  void assign(int n, float diagonal) {
+    for (int k = 0; k < 6; ++k) of[k].assign(n, k < 3 ? diagonal : 0.f);
+  }
+};
+
+/// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu harmonic and at least leastPair, even =
+/// n.(B_i + B_j).n / 2 along the pair, at least leastEven; diagonal_i = sum c_ij.
 struct PairViscositySweep {
   PairLists pairs;
-  const float *r, *viscosity, *evenness;
-  float scale, leastPair, eta2;
+  const float *r, *viscosity;
+  const Tensors* evenness;
+  float scale, leastPair, eta2, leastEven;
   float *c, *diagonal;
   void run(int begin, int end) const;
 };
 
-/// even_i = 3 / max(3 least, sum |g_ij| r + 3 wall_i)
-struct EvennessSweep {
+/// Adds sum r |g| n n (n along the pair) to a tensor of each slot.
+struct MomentSweep {
   PairLists pairs;
-  const float *r, *wall;
-  float least;
-  float *evenness;
+  const float* r;
+  Tensors* moment;
   void run(int begin, int end) const;
 };
 

@@ -2,6 +2,7 @@
 #include "bolus/viscosity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace swallowclip::bolus {
@@ -15,6 +16,8 @@ constexpr double kLeastEvenness = 0.8;
 // Determinant of the moment matrix below which a neighbourhood is too one-sided to be corrected,
 // assumed (0.1 to 0.5); 1 is a full one.
 constexpr double kLeastMoment = 0.3;
+constexpr double kIsotropic = 2.5;       // see evenOut
+constexpr double kLeastPairShare = 0.2;  // of a pair's own weight, keeps it positive, assumed
 constexpr int kCap = 300;            // iterations, assumed (100 to 500)
 constexpr double kTolerance = 1e-4;  // residual over right side, assumed (1e-5 to 1e-3)
 // Eq. 4.26 (Morris et al. 1997) is dt = 0.125 h^2 / nu; half of it, to be clear of the edge.
@@ -51,26 +54,47 @@ double shearRate_s(const Mat3& gradient) {
   return std::sqrt(2 * d.squaredNorm());
 }
 
+// The second moment M of the weights, identity when full, becomes what evens it out. With fourth
+// moments as of isotropic neighbours, weights changed by n.B.n have the moment (tr B + 2 B) / 5
+// times theirs: B = (1 - 5/2 deviator of M) over a third of its trace.
+void Viscosity::evenOut(const WallSample& w, int i) {
+  std::array<double, 6> m;
+  for (int k = 0; k < 6; ++k) m[k] = evenness_.of[k][i];
+  if (const double steep2 = w.gradLambda.squaredNorm(); steep2 > 0) {
+    // beyond the wall: lambda all round and the rest along its normal (by parts)
+    const Vec3& g = w.gradLambda;
+    const double rest = 3 * (w.lambdaSlope - w.lambda) / steep2;
+    const double outer[6] = {g.x() * g.x(), g.y() * g.y(), g.z() * g.z(),
+                             g.x() * g.y(), g.x() * g.z(), g.y() * g.z()};
+    for (int k = 0; k < 6; ++k) m[k] += rest * outer[k] + (k < 3 ? w.lambda : 0);
+  }
+  const double third = (m[0] + m[1] + m[2]) / 3, even = 1 / std::max(kLeastEvenness, third);
+  for (int k = 0; k < 6; ++k)
+    evenness_.of[k][i] = static_cast<float>(
+        even * ((k < 3 ? 1 : 0) - kIsotropic * even * (m[k] - (k < 3 ? third : 0))));
+}
+
 void Viscosity::assemble(const Flow& f, double density, double leastPair, double dt,
                          double support) {
   const Neighbours& nb = f.neighbours;
   const int n = f.count();
   pair_.resize(nb.index.size());
-  for (auto* each : {&evenness_, &slope_, &mu_}) each->assign(n + 1, 1.f);
-  for (int i = 0; i < n; ++i) {
-    slope_[i] = static_cast<float>(f.walls[f.particle(i)].lambdaSlope);
-    mu_[i] = static_cast<float>(viscosity_[i]);
-  }
-  const EvennessSweep even{f.lists(), nb.r.data(), slope_.data(),
-                           static_cast<float>(kLeastEvenness), evenness_.data()};
-  f.sweep([&](int begin, int end, int) { even.run(begin, end); });
+  mu_.assign(n + 1, 1.f);
+  evenness_.assign(n + 1, 0);
+  for (int i = 0; i < n; ++i) mu_[i] = static_cast<float>(viscosity_[i]);
+  const MomentSweep moments{f.lists(), nb.r.data(), &evenness_};
+  f.sweep([&](int begin, int end, int) {
+    moments.run(begin, end);
+    for (int i = begin; i < end; ++i) evenOut(f.walls[f.particle(i)], i);
+  });
   const PairViscositySweep sweep{f.lists(),
                                  nb.r.data(),
                                  mu_.data(),
-                                 evenness_.data(),
+                                 &evenness_,
                                  static_cast<float>(dt / density),  // 2, and half of two evennesses
                                  static_cast<float>(leastPair),
                                  static_cast<float>(kSoftening * support * support / 4),
+                                 static_cast<float>(kLeastPairShare),
                                  pair_.data(),
                                  inverse_.data()};
   f.sweep([&](int begin, int end, int) {

@@ -35,13 +35,15 @@ class Viscosity {
  private:
   void assemble(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
                 double support_m);
+  void evenOut(const WallSample& wall, int slot);
   bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
                           double support_m) const;
   Report solve(const Flow& flow);
 
   std::vector<double> wallDrag_;                // [particle]
   std::vector<double> viscosity_, force_;       // [slot]; [slot][3]
-  std::vector<float> evenness_, slope_, mu_;    // [slot + 1]
+  std::vector<float> mu_;                       // [slot + 1]
+  Tensors evenness_;                            // [slot + 1]
   std::vector<Vec3> right_;                     // [slot] right side
   std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] 1 + wall drag; 1 / diagonal
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
