@@ -37,6 +37,7 @@ constexpr double kRelative = 2e-3, kFloor = 1e-4;  // assumed (1e-3 to 5e-3; 1e-
 // of it velocities may fill the less, the smaller it is. Else a fluid at rest would fall into it
 // every step, and its pressure carry that much less. Assumed (0.02 to 0.1).
 constexpr double kOpening = 0.05;
+constexpr double kSettle_s = 0.3;
 constexpr int kDensityCap = 150;     // iterations, assumed (100 to 300)
 constexpr int kRateCap = 500;        // assumed (200 to 1000): a long gap of 150 spacings needs 200
 constexpr float kNoLimit = 1e30f;    // m^2/s^2
@@ -212,7 +213,8 @@ ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<dou
   // what is still below rest density may close up; nothing is pulled apart
   for (int i = 0; i < f.count(); ++i) {
     const double room = std::max(0.0, 1 - density[f.particle(i)]);
-    const double open = full ? 0 : room * std::min(1.0, room / kOpening) / dt_s;
+    const double open =
+        full ? 0 : std::max(0.0, room - kOpening) / dt_s + std::min(room, kOpening) / kSettle_s;
     source_[i] = static_cast<float>((source_[i] - open) / dt_s);
   }
   takeMeanOff(f.count());

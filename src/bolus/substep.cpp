@@ -16,6 +16,7 @@ constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contact
 constexpr double kMeanError = 1.5e-3, kPeakError = 0.07;  // assumed (half of what is allowed)
 constexpr double kShorten = 0.7, kLengthen = 1.04;        // assumed
 constexpr double kLeastShare = 1.0 / 16;                  // of the step otherwise chosen, assumed
+constexpr double kRelaxedSum = 1.015;
 constexpr double kFilmThickness = 0.1;  // spacings, assumed (0.05 to 0.3): how thick a film drains
 
 // Nusselt (1916): mean speed of a film of thickness h down a wall is rho g h^2 / (3 eta); here per
@@ -35,7 +36,8 @@ Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
       kernel(d.kernel, supportPerSpacing(d.kernel) * d.spacing_m),
       table(kernel),
       field(table, d.spacing_m),
-      volume_m3(std::pow(d.spacing_m, 3) / kernel.latticeSum(d.spacing_m)),
+      volume_m3(std::pow(d.spacing_m, 3) /
+                ((d.full ? 1 : kRelaxedSum) * kernel.latticeSum(d.spacing_m))),
       filmDrainage_s(
           drainagePerAcceleration_s(d.fluid, kFilmThickness * d.spacing_m, d.gravity_ms2.norm())) {}
 
@@ -139,7 +141,9 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
   shifting.carry(flow, dt_s, moving, v);
   projection.stress_m2s2(flow, particles.pressure_Pa);
-  for (double& p : particles.pressure_Pa) p *= def.fluid.density_kgm3;
+  // per volume that the particle really has
+  for (std::size_t i = 0; i < v.size(); ++i)
+    particles.pressure_Pa[i] *= def.fluid.density_kgm3 * particles.densityRatio[i];
 }
 
 // Pressure of the equation of state and viscosity, both explicit.
