@@ -120,8 +120,8 @@ Result<RelaxReport> Solver::relax(double t_s, double longest_s) {
   Result<void> ok;
   std::vector<Vec3> before = s.particles.positions;
   for (double window_s = 0; report.time_s < longest_s && !report.atRest;) {
-    const double dt = s.chooseStep_s(1e-3);
-    const Impl::Substep step = s.substep(dt);
+    const Impl::Substep step = s.substep(s.chooseStep_s(1e-3));
+    const double dt = step.length_s;
     report.time_s += dt;
     report.meanDensityError = step.meanError;
     window_s += dt;
@@ -206,8 +206,8 @@ Result<StepReport> Solver::advanceTo(double t_s) {
   std::vector<double> sum(pressure.size(), 0.0);
   double length_s = 0;
   while (s.time_s < t_s - 1e-12) {
-    const double dt = s.chooseStep_s(t_s - s.time_s);
-    const Impl::Substep step = s.substep(dt);
+    const Impl::Substep step = s.substep(s.chooseStep_s(t_s - s.time_s));
+    const double dt = step.length_s;
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += dt * pressure[i];
     length_s += dt;
     ++report.substeps;

@@ -20,6 +20,7 @@ struct Solver::Impl {
 
   // What a substep was like.
   struct Substep {
+    double length_s = 0;
     double meanError = 0, maxError = 0, maxSpeed_ms = 0;
     int fluidCount = 0, aboveTenPercent = 0, worst = -1;
     ProjectionReport density, rate;
@@ -31,7 +32,9 @@ struct Solver::Impl {
   /// Walls at t, particles pushed inside them, states, neighbours, wall integrals, densities.
   int meetWalls(double t_s);
   double chooseStep_s(double longest_s);
-  Substep substep(double dt_s);
+  Substep substep(double dt_s);  ///< of at most dt_s
+  double projectInReach(double dt_s, Substep& report);
+  bool outruns(double dt_s, const Vec3& velocity) const;
   Result<void> checkStep(const Substep& s, double dt_s);
   void finishFrame();  ///< path coordinates of all particles, escape check
 

@@ -104,14 +104,16 @@ void Solver::Impl::chooseSound(double speed_ms) {
   wcsph.chooseSound(s, lastStep_s);
 }
 
+bool Solver::Impl::outruns(double dt_s, const Vec3& velocity) const {
+  return velocity.norm() > kLongestMove * def.spacing_m / dt_s;
+}
+
 // A particle must not outrun the contacts it knows.
 int Solver::Impl::clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const {
-  const double limit = kLongestMove * def.spacing_m / dt_s;
   int clamped = 0;
   for (Vec3& v : velocities) {
-    const double speed = v.norm();
-    if (speed <= limit) continue;
-    v *= limit / speed;
+    if (!outruns(dt_s, v)) continue;
+    v *= kLongestMove * def.spacing_m / dt_s / v.norm();
     ++clamped;
   }
   return clamped;
@@ -146,6 +148,22 @@ void Solver::Impl::project(double dt_s, Substep& report) {
     particles.pressure_Pa[i] *= def.fluid.density_kgm3 * particles.densityRatio[i];
 }
 
+// A step that speeds a particle up beyond the reach of its contacts is taken again, half as long.
+double Solver::Impl::projectInReach(double dt_s, Substep& report) {
+  const std::vector<Vec3> before = particles.velocities;
+  const std::vector<double> rate = projection.rateWarm(), density = projection.densityWarm();
+  for (;; dt_s /= 2) {
+    project(dt_s, report);
+    const auto outrun = [&](const Vec3& v) { return outruns(dt_s, v); };
+    if (dt_s / 2 < kShortestStep_s ||
+        (std::ranges::none_of(particles.velocities, outrun) && std::ranges::none_of(moving, outrun)))
+      return dt_s;
+    particles.velocities = before;
+    projection.rateWarm() = rate;
+    projection.densityWarm() = density;
+  }
+}
+
 // Pressure of the equation of state and viscosity, both explicit.
 void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
   const Flow flow{neighbours, walls, pool};
@@ -167,7 +185,8 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
   if (compressible())
     pushExplicitly(dt_s, report), moving = particles.velocities;
   else
-    project(dt_s, report);
+    dt_s = projectInReach(dt_s, report);
+  report.length_s = lastStep_s = dt_s;
   move(dt_s, report);
   measure(report);
   return report;
