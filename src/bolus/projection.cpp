@@ -33,11 +33,11 @@ constexpr double kCorrection_s = 1e-4;
 // that is less; and no further than the second share of its tolerance. Fluid driven through a long
 // gap needs it: the compression that drives it is small beside what pressure and friction exchange.
 constexpr double kRelative = 2e-3, kFloor = 1e-4;  // assumed (1e-3 to 5e-3; 1e-5 to 1e-3)
-// Density that lacks less than this lies between particles that are in disorder, not in an opening:
-// of it velocities may fill the less, the smaller it is. Else a fluid at rest would fall into it
-// every step, and its pressure carry that much less. Assumed (0.02 to 0.1).
-constexpr double kOpening = 0.05;
-constexpr double kSettle_s = 0.3;
+// Density that lacks less than kOpening lies between particles that are in disorder, not in an
+// opening, and closes within this time. Velocities that filled it at once would let a fluid at rest
+// fall into it every step, and a squeezed one lose a tenth of its flux. Assumed (0.02 to 0.1; 0.2 to
+// 1 s; 0.05 s leaves squeezed plates 8 % short of pressure).
+constexpr double kOpening = 0.05, kSettle_s = 0.3;
 constexpr int kDensityCap = 150;     // iterations, assumed (100 to 300)
 constexpr int kRateCap = 500;        // assumed (200 to 1000): a long gap of 150 spacings needs 200
 constexpr float kNoLimit = 1e30f;    // m^2/s^2
