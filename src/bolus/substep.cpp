@@ -13,7 +13,7 @@ constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contact
 // Pressure and viscosity act one after the other, which leaves compression behind where a thick
 // fluid is squeezed: 5 Pa.s at 2 mm, 2.8 / 0.5 / 0.2 per mille on average at 0.6 / 0.25 / 0.125 ms.
 // So a step that leaves more than this shortens the next one, and quiet ones lengthen it again.
-constexpr double kMeanError = 1.5e-3, kPeakError = 0.07;  // assumed (half of what is allowed)
+constexpr double kMeanError = 1.5e-3, kPeakError = 0.045;  // assumed (a half and a third of what is allowed)
 constexpr double kShorten = 0.7, kLengthen = 1.04;        // assumed
 constexpr double kLeastShare = 1.0 / 16;                  // of the step otherwise chosen, assumed
 // A relaxed fluid's kernel sums are this much larger than those of a cubic lattice with as many
