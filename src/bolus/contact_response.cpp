@@ -11,6 +11,9 @@ constexpr double kGapShare = 0.45;      // of the local gap (DESIGN 5, measured)
 constexpr double kFacingCosine = -0.5;  // walls within 60 degrees of opposite, assumed (-0.8 to 0)
 constexpr int kPasses = 3;              // Gauss-Seidel over the contacts, assumed (2 to 5)
 constexpr int kRescues = 4;             // times a particle outside is looked at again, assumed
+// Farther in one go no wall pushes, in spacings, assumed (0.1 to 0.5): where sheets cross and part,
+// a cusp opens at once, and what it held comes out bit by bit.
+constexpr double kLongestPush = 0.2;
 constexpr double kJustInside = 1e-3;    // spacings, assumed: small against the smallest gap
 
 double keptDistance(const std::vector<Contact>& contacts, double spacing_m) {
@@ -50,23 +53,29 @@ void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& 
 }
 
 bool projectInside(const WallField& field, double spacing_m, Vec3& x, std::vector<Contact>& out) {
-  const double reach = kContactReach * spacing_m;
+  const double reach = kContactReach * spacing_m, longest = kLongestPush * spacing_m;
+  const Vec3 start = x;
   bool wasOutside = false;
+  const auto stayAt = [&](const Vec3& place) {
+    x = place;
+    field.contacts(x, reach, out);
+  };
   for (int k = 0; k < kRescues; ++k) {
     field.contacts(x, reach, out);
     if (out.empty() || out[0].distance_m >= 0) break;
     wasOutside = true;
     x = out[0].point + kJustInside * spacing_m * out[0].inward;
   }
+  // Between sheets that cross there is no inside: hopping from one to the other leads far away.
+  if (wasOutside && (x - start).norm() > longest) stayAt(start);
   if (out.empty() || out[0].distance_m < 0) return wasOutside;
   const Vec3 before = x;
   keepDistance(out, spacing_m, x);
   if (x == before) return wasOutside;
+  const double pushed = (x - before).norm();
+  if (pushed > longest) x = before + longest / pushed * (x - before);
   field.contacts(x, reach, out);
-  if (!out.empty() && out[0].distance_m < 0) {  // a corner threw it out: stay
-    x = before;
-    field.contacts(x, reach, out);
-  }
+  if (!out.empty() && out[0].distance_m < 0) stayAt(before);  // a corner threw it out
   return wasOutside;
 }
 }  // namespace swallowclip::bolus

@@ -18,6 +18,7 @@ constexpr double kFilmReach = 0.45;   // spacings: just above a particle's rest 
 constexpr double kTakeUpReach = 1.2;  // spacings, assumed (1 to 1.5)
 constexpr int kTakeUpCount = 3;       // fluid particles that near take a film up, assumed (2 to 5)
 constexpr double kTakeUpDensity = 1.03;  // of rho0 where a film is taken up, assumed (1 to 1.05)
+constexpr double kCrowdedDensity = 1.08;  // and at most what it makes of others', assumed
 constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
 }  // namespace
 
@@ -111,8 +112,9 @@ void Solver::Impl::updateStates() {
     State& s = particles.state[i];
     if (s != State::swallowed) {
       const bool wasFilm = s == State::film;
-      s = localGap_m(contacts[i]) < kFilmGap * def.spacing_m || walls[i].lambda > kFilmLambda ||
-                  staysFilm(i)
+      const bool betweenCrossed = !contacts[i].empty() && contacts[i][0].distance_m < 0;
+      s = betweenCrossed || localGap_m(contacts[i]) < kFilmGap * def.spacing_m ||
+                  walls[i].lambda > kFilmLambda || staysFilm(i)
               ? State::film
               : State::fluid;
       if (wasFilm && s == State::fluid) takenUp.push_back(static_cast<int>(i));
@@ -127,17 +129,26 @@ void Solver::Impl::updateStates() {
 }
 
 bool Solver::Impl::staysFilm(std::size_t i) const {
-  if (particles.state[i] != State::film || contacts[i].empty()) return false;
+  if (particles.state[i] != State::film) return false;
   const Vec3& x = particles.positions[i];
-  if (neighbours.countWithin(x, kTakeUpReach * def.spacing_m) < kTakeUpCount) return true;
+  neighbours.around(x, nearFilm);
+  const double reach_m = kTakeUpReach * def.spacing_m;
+  const auto close = [&](const auto& n) { return n.away_m < reach_m; };
+  if (!contacts[i].empty() && std::ranges::count_if(nearFilm, close) < kTakeUpCount) return true;
   // fluid that is there already makes room first
-  double sum = neighbours.sumWAt(x, kernel) + kernel.w(0);
-  for (const int j : takenUp) sum += kernel.w((particles.positions[j] - x).norm());
+  for (const int j : takenUp) nearFilm.push_back({j, (particles.positions[j] - x).norm()});
+  double sum = kernel.w(0);
+  for (const auto& [j, away_m] : nearFilm) {
+    const double share = volume_m3 * kernel.w(away_m);
+    if (share > 0 && particles.densityRatio[j] + share > kCrowdedDensity) return true;
+    sum += kernel.w(away_m);
+  }
   return volume_m3 * sum + field.sample(x).lambda > kTakeUpDensity;
 }
 
 Vec3 Solver::Impl::filmVelocity_ms(int i) const {
   const std::vector<Contact>& c = contacts[i];
+  if (c.empty()) return particles.velocities[i];  // let go by a wall, on its way into the fluid
   if (localGap_m(c) < kFilmGap * def.spacing_m)  // held by two sheets
     return (c[0].velocity + c[facingContact(c)].velocity) / 2;
   const Vec3 along = def.gravity_ms2 - def.gravity_ms2.dot(c[0].inward) * c[0].inward;

@@ -137,8 +137,8 @@ void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std
   }
 }
 
-template <class Visit>
-void Neighbours::visitAround(const Vec3& p, Visit&& visit) const {
+void Neighbours::around(const Vec3& p, std::vector<Near>& out) const {
+  out.clear();
   if (count == 0) return;
   const Vec3 at = p - low_;
   Eigen::Vector3i from, to;
@@ -153,20 +153,8 @@ void Neighbours::visitAround(const Vec3& p, Visit&& visit) const {
     for (int cy = from.y(); cy <= to.y(); ++cy) {
       const int row = (cz * size_.y() + cy) * size_.x();
       for (int k = cellStart_[row + from.x()]; k < cellStart_[row + to.x() + 1]; ++k)
-        visit((Vec3(sx_[k], sy_[k], sz_[k]) - at).norm());
+        out.push_back({id[owner_[k]], (Vec3(sx_[k], sy_[k], sz_[k]) - at).norm()});
     }
-}
-
-int Neighbours::countWithin(const Vec3& p, double radius_m) const {
-  int found = 0;
-  visitAround(p, [&](double away) { found += away < radius_m; });
-  return found;
-}
-
-double Neighbours::sumWAt(const Vec3& p, const Kernel& kernel) const {
-  double sum = 0;
-  visitAround(p, [&](double away) { sum += kernel.w(away); });
-  return sum;
 }
 
 namespace {

@@ -63,18 +63,18 @@ struct Neighbours {
   void build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
              const KernelTable& kernel, double volume_m3, const Vec3& period_m, ThreadPool& pool);
 
-  /// How many particles of the last build are nearer to p than radius (at most a support).
-  int countWithin(const Vec3& p, double radius_m) const;
-  /// Sum of W (1/m^3) of the particles of the last build at any place.
-  double sumWAt(const Vec3& p, const Kernel& kernel) const;
+  /// Particles of the last build in the cells around any place, and how far away (m).
+  struct Near {
+    int particle;
+    double away_m;
+  };
+  void around(const Vec3& p, std::vector<Near>& out) const;
 
  private:
   struct Found {
     std::vector<int> index, length, places;
     std::vector<float> dx, dy, dz, r, gx, gy, gz;
   };
-  template <class Visit>
-  void visitAround(const Vec3& p, Visit&& visit) const;
   void sortIntoCells(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                      double cell_m, const Vec3& period_m);
   void search(int begin, int end, const KernelTable& kernel, double volume_m3, Found& out);

@@ -86,6 +86,7 @@ struct Solver::Impl {
   bool wallsStood = false;                     // since the last step
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
   std::vector<int> takenUp;                    // films that became fluid just now
+  mutable std::vector<Neighbours::Near> nearFilm;
   std::vector<std::uint8_t> active;            // takes part in the pressure solve
   Neighbours neighbours;
   std::vector<Vec3> moving;  // velocities, and what the density left above rest adds to them
