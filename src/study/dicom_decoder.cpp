@@ -2,45 +2,41 @@
 #include "study/dicom_decoder.h"
 
 #include <gdcmImage.h>
-#include <gdcmReader.h>
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 
 #include "core/file.h"
-#include "study/dicom_header.h"
+#include "study/coded_frame.h"
 #include "video/video_reader.h"
 
 namespace swallowclip::study {
 namespace {
-const gdcm::Tag kPixelData(0x7fe0, 0x0010);
+using TS = gdcm::TransferSyntax;
 
 // PS3.5 annex A.4; only these are decoded.
-enum class Coding { none, gdcm, video };
+enum class Coding { none, rle, jpeg, jpeg2000, video };
 
-Result<Coding> codingOf(const gdcm::TransferSyntax& syntax) {
-  using TS = gdcm::TransferSyntax;
-  switch (static_cast<TS::TSType>(syntax)) {
+Result<Coding> codingOf(TS::TSType syntax) {
+  switch (syntax) {
     case TS::ImplicitVRLittleEndian:
     case TS::ExplicitVRLittleEndian:
     case TS::ExplicitVRBigEndian:
       return Coding::none;
+    case TS::RLELossless:
+      return Coding::rle;
     case TS::JPEGBaselineProcess1:
     case TS::JPEGExtendedProcess2_4:
     case TS::JPEGLosslessProcess14:
     case TS::JPEGLosslessProcess14_1:
     case TS::JPEGLSLossless:
     case TS::JPEGLSNearLossless:
+      return Coding::jpeg;
     case TS::JPEG2000Lossless:
     case TS::JPEG2000:
-    case TS::RLELossless:
-      return Coding::gdcm;
+      return Coding::jpeg2000;
     case TS::MPEG4AVCH264HighProfileLevel4_1:
     case TS::MPEG4AVCH264BDcompatibleHighProfileLevel4_1:
       return Coding::video;
@@ -52,53 +48,6 @@ Result<Coding> codingOf(const gdcm::TransferSyntax& syntax) {
 
 std::unexpected<Error> damaged(const std::string& what) {
   return refuse(what, "It is cut off or damaged: export it again.");
-}
-
-/// While it lives this process gets little more memory than a file of that size can fill: GDCM
-/// clears room for every length that a file claims before it looks whether so much is there, and a
-/// gigabyte of zeros takes half a second. Sanitizers reserve terabytes: no limit with them.
-class ParsingRoom {
- public:
-  explicit ParsingRoom(std::uintmax_t file_bytes) {
-    ::getrlimit(RLIMIT_AS, &before_);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    constexpr std::uintmax_t kRoom_bytes = std::uintmax_t{32} << 20;  // assumed, range 8 to 500 MB
-    std::uintmax_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    rlimit less = before_;
-    less.rlim_cur = std::min<rlim_t>(less.rlim_cur,
-                                     pages * static_cast<std::uintmax_t>(::sysconf(_SC_PAGESIZE)) +
-                                         3 * file_bytes + kRoom_bytes);
-    ::setrlimit(RLIMIT_AS, &less);
-#else
-    (void)file_bytes;
-#endif
-  }
-  ~ParsingRoom() {
-    ::setrlimit(RLIMIT_AS, &before_);
-  }
-  ParsingRoom(const ParsingRoom&) = delete;
-  ParsingRoom& operator=(const ParsingRoom&) = delete;
-
- private:
-  rlimit before_{};
-};
-
-/// GDCM fills what a cut-off file lacks with zeros. Whether the pixels' end is really there: bytes
-/// of an element of the length that it reports (-1: of fragments, which end with a delimiter).
-bool pixelsAreWhole(const std::string& file, std::int64_t length, bool bigEndian) {
-  using namespace std::string_literals;
-  if (length < 0) return file.rfind("\xfe\xff\xdd\xe0\0\0\0\0"s) != std::string::npos;
-  const std::string tag = bigEndian ? "\x7f\xe0\x00\x10"s : "\xe0\x7f\x10\x00"s;
-  for (std::size_t at = file.find(tag); at != std::string::npos; at = file.find(tag, at + 1))
-    for (const std::size_t head : {8, 12}) {  // implicit, explicit value representation
-      if (at + head > file.size()) continue;
-      std::uint32_t told = 0;
-      std::memcpy(&told, file.data() + at + head - 4, 4);
-      if (bigEndian) told = __builtin_bswap32(told);
-      if (told == length && at + head + told <= file.size()) return true;
-    }
-  return false;
 }
 
 /// One frame's values as the file stores them, made 8-bit RGBA.
@@ -124,7 +73,7 @@ class Display {
   }
 
   /// `ybr`: full-range Y Cb Cr values (PS3.3 C.7.6.3.1.2).
-  Image picture(const std::vector<char>& values, bool ybr) const {
+  Image picture(std::string_view values, bool ybr) const {
     Image image(h_.columns, h_.rows);
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(values.data());
     const std::size_t pixels = static_cast<std::size_t>(h_.rows) * h_.columns;
@@ -158,47 +107,47 @@ class Display {
 }  // namespace
 
 struct DicomDecoder::State {
-  gdcm::Reader reader;
+  std::string file;  ///< its bytes; what follows looks into them
   DicomHeader header;
   StudyInfo info;
+  TS::TSType syntax = TS::TS_END;
   Coding coding = Coding::none;
+  Element pixels;
+  bool swapped = false;  ///< pairs of bytes in `pixels`
   std::optional<Display> display;
-  std::vector<std::vector<unsigned>> fragments;  ///< [frame] which fragments make it up, from 0
+  std::vector<std::string> coded;  ///< [frame] compressed
   std::unique_ptr<video::VideoReader> video;
   int next = 0;  ///< video only
 
-  const gdcm::DataElement& pixels() const {
-    return reader.GetFile().GetDataSet().GetDataElement(kPixelData);
-  }
   Result<void> read(const StudyDef& def);
   Result<void> layOut();
   Result<void> splitFragments();
   Result<void> openVideo();
   Result<Image> videoFrame(int k);
   Result<Image> decode(int k);
+  Result<std::string> decompress(int k) const;
 };
 
 Result<void> DicomDecoder::State::read(const StudyDef& def) {
-  gdcm::Trace::DebugOff();
-  gdcm::Trace::WarningOff();
-  gdcm::Trace::ErrorOff();
-  reader.SetFileName(def.path.string().c_str());
-  bool whole = false;
-  try {
-    std::error_code ec;
-    const ParsingRoom room(std::filesystem::file_size(def.path, ec));
-    whole = reader.Read();
-  } catch (const std::exception&) {  // its text may quote the file
-  }
-  if (!whole) return damaged("is no whole DICOM file");
-  auto coded = codingOf(reader.GetFile().GetHeader().GetDataSetTransferSyntax());
-  if (!coded) return std::unexpected(coded.error());
-  coding = *coded;
-  auto h = readHeader(reader.GetFile(), def.frameRate_hz);
+  auto bytes = readFile(def.path);
+  if (!bytes) return refuse("can't be read", "Check its permissions.");
+  file = std::move(*bytes);
+  auto meta = parseMeta(file);
+  if (!meta) return std::unexpected(meta.error());
+  syntax = TS::GetTSType(meta->transferSyntax.c_str());
+  auto known = codingOf(syntax);
+  if (!known) return std::unexpected(known.error());
+  coding = *known;
+  auto set = DataSet::parse(meta->set, meta->coding);
+  if (!set) return std::unexpected(set.error());
+  auto h = readHeader(*set, def.frameRate_hz);
   if (!h) return std::unexpected(h.error());
   header = std::move(*h);
-  if (!reader.GetFile().GetDataSet().FindDataElement(kPixelData))
+  const Element* found = set->find(0x7fe00010);
+  if (!found)
     return refuse("holds no pixels (7FE0,0010)", "Name an XA, RF or secondary capture object.");
+  pixels = *found;
+  swapped = meta->coding.bigEndian && (pixels.words || header.bitsAllocated == 16);
   display.emplace(header);
   info.width = header.columns;
   info.height = header.rows;
@@ -207,23 +156,15 @@ Result<void> DicomDecoder::State::read(const StudyDef& def) {
   info.timing = header.timing;
   info.burnedIn = header.burnedIn;
   info.warnings = header.warnings;
-  auto bytes = readFile(def.path);
-  if (!bytes) return refuse("can't be read", "Check its permissions.");
-  const gdcm::ByteValue* value = pixels().GetByteValue();
-  const auto syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
-  if (!pixelsAreWhole(*bytes, value ? static_cast<std::int64_t>(value->GetLength()) : -1,
-                      syntax == gdcm::TransferSyntax::ExplicitVRBigEndian))
-    return damaged("ends before its pixels do");
   return layOut();
 }
 
 Result<void> DicomDecoder::State::layOut() {
   if (coding == Coding::video) return openVideo();
   if (header.pixelAspect != 1) info.warnings.push_back("pixels are not square: shown as stored");
-  if (coding == Coding::gdcm) return splitFragments();
-  const gdcm::ByteValue* value = pixels().GetByteValue();
+  if (coding != Coding::none) return splitFragments();
   const std::size_t needed = header.frameValues() * (header.bitsAllocated / 8) * header.frames;
-  const std::size_t held = value ? static_cast<std::size_t>(value->GetLength()) : 0;
+  const std::size_t held = pixels.openEnded ? 0 : pixels.value.size();
   if (header.photometric == "YBR_FULL_422")
     return refuse("stores uncompressed 4:2:2 colour", "Convert it to RGB.");
   if (held < needed)
@@ -234,42 +175,33 @@ Result<void> DicomDecoder::State::layOut() {
 
 /// PS3.5 A.4: one fragment per frame, or frames that begin where the Basic Offset Table says.
 Result<void> DicomDecoder::State::splitFragments() {
-  const gdcm::SequenceOfFragments* sequence = pixels().GetSequenceOfFragments();
-  if (!sequence) return damaged("its compressed pixels are not in fragments");
-  const std::size_t count = sequence->GetNumberOfFragments();
+  auto items = fragmentsOf(pixels);
+  if (!items) return std::unexpected(items.error());
+  const std::string_view table = items->front();
+  const std::size_t count = items->size() - 1, offsets = table.size() / 4;
   const auto frames = static_cast<std::size_t>(header.frames);
-  if (count == frames) {
-    for (unsigned i = 0; i < count; ++i) fragments.push_back({i});
-    return {};
-  }
-  std::vector<std::uint32_t> starts;
-  if (const gdcm::ByteValue* table = sequence->GetTable().GetByteValue()) {
-    starts.resize(table->GetLength() / 4);
-    if (!starts.empty()) std::memcpy(starts.data(), table->GetPointer(), 4 * starts.size());
-  }
-  if (starts.size() != frames || count < frames)
+  if (count != frames && (offsets != frames || count < frames))
     return damaged(
-        fmt::format("{} fragments and {} offsets for {} frames", count, starts.size(), frames));
-  std::uint64_t at = 0;
-  for (unsigned i = 0; i < count; ++i) {
-    if (fragments.size() < frames && at == starts[fragments.size()]) fragments.emplace_back();
-    if (fragments.empty())
-      return damaged("its offset table does not begin with the first fragment");
-    fragments.back().push_back(i);
-    at += 8 + static_cast<std::uint64_t>(sequence->GetFragment(i).GetVL());
+        fmt::format("{} fragments and {} offsets for {} frames", count, offsets, frames));
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string_view part = (*items)[i + 1];
+    if (count == frames || (coded.size() < frames && at == wordAt(table, 4 * coded.size(), 4)))
+      coded.emplace_back();
+    if (coded.empty()) return damaged("its offset table does not begin with the first fragment");
+    coded.back() += part;
+    at += 8 + part.size();
   }
-  if (fragments.size() != frames)
-    return damaged(fmt::format("its offset table fits {} of {} frames", fragments.size(), frames));
+  if (coded.size() != frames)
+    return damaged(fmt::format("its offset table fits {} of {} frames", coded.size(), frames));
   return {};
 }
 
 Result<void> DicomDecoder::State::openVideo() {
-  const gdcm::SequenceOfFragments* sequence = pixels().GetSequenceOfFragments();
-  if (!sequence) return damaged("its compressed pixels are not in fragments");
+  auto items = fragmentsOf(pixels);
+  if (!items) return std::unexpected(items.error());
   std::string stream;  // PS3.5 8.2.7: one stream, possibly cut into fragments
-  for (unsigned i = 0; i < sequence->GetNumberOfFragments(); ++i)
-    if (const gdcm::ByteValue* part = sequence->GetFragment(i).GetByteValue())
-      stream.append(part->GetPointer(), part->GetLength());
+  for (std::size_t i = 1; i < items->size(); ++i) stream += (*items)[i];
   if (stream.empty()) return damaged("holds no video stream");
   auto opened = video::VideoReader::open({{}, std::move(stream), kPlace});
   if (!opened) return std::unexpected(opened.error());
@@ -294,17 +226,28 @@ Result<Image> DicomDecoder::State::videoFrame(int k) {
 }
 
 Result<Image> DicomDecoder::State::decode(int k) {
-  const std::size_t size = header.frameValues() * (header.bitsAllocated / 8);
-  std::vector<char> values(size);
   if (coding == Coding::none) {
-    std::memcpy(values.data(), pixels().GetByteValue()->GetPointer() + size * k, size);
+    const std::size_t size = header.frameValues() * (header.bitsAllocated / 8);
+    std::string values(pixels.value.substr(size * k, size));
+    if (swapped)
+      for (std::size_t i = 0; i + 1 < values.size(); i += 2) std::swap(values[i], values[i + 1]);
     return display->picture(values, header.photometric.starts_with("YBR"));
   }
-  // GDCM decodes a still picture made of this frame's fragments
+  auto values = decompress(k);
+  if (!values) return std::unexpected(values.error());
+  // JPEG 2000 turns its own colour transform back; everything else comes as stored
+  return display->picture(*values, header.photometric.starts_with("YBR_FULL"));
+}
+
+Result<std::string> DicomDecoder::State::decompress(int k) const {
+  if (coding == Coding::rle) return decodeRle(coded[k], header, k);
+  const auto check = coding == Coding::jpeg ? checkJpeg : checkJpeg2000;
+  if (auto agrees = check(coded[k], header, k); !agrees) return std::unexpected(agrees.error());
   gdcm::SmartPointer<gdcm::SequenceOfFragments> own = new gdcm::SequenceOfFragments;
-  for (const unsigned i : fragments[k])
-    own->AddFragment(pixels().GetSequenceOfFragments()->GetFragment(i));
-  gdcm::DataElement element(kPixelData);
+  gdcm::Fragment fragment;
+  fragment.SetByteValue(coded[k].data(), static_cast<std::uint32_t>(coded[k].size()));
+  own->AddFragment(fragment);
+  gdcm::DataElement element(gdcm::Tag(0x7fe0, 0x0010));
   element.SetVR(gdcm::VR::OB);
   element.SetValue(*own);
   gdcm::Image still;
@@ -318,12 +261,12 @@ Result<Image> DicomDecoder::State::decode(int k) {
   still.SetPhotometricInterpretation(
       gdcm::PhotometricInterpretation::GetPIType(header.photometric.c_str()));
   still.SetPlanarConfiguration(static_cast<unsigned>(header.planarConfiguration));
-  still.SetTransferSyntax(reader.GetFile().GetHeader().GetDataSetTransferSyntax());
+  still.SetTransferSyntax(syntax);
   still.SetDataElement(element);
-  if (still.GetBufferLength() != size || !still.GetBuffer(values.data()))
+  std::string values(header.frameValues() * (header.bitsAllocated / 8), '\0');
+  if (still.GetBufferLength() != values.size() || !still.GetBuffer(values.data()))
     return damaged(fmt::format("frame {} can't be decompressed", k));
-  // JPEG 2000 turns its own colour transform back; everything else comes as stored
-  return display->picture(values, header.photometric.starts_with("YBR_FULL"));
+  return values;
 }
 
 DicomDecoder::DicomDecoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -333,6 +276,9 @@ const StudyInfo& DicomDecoder::info() const {
 }
 
 Result<std::unique_ptr<DicomDecoder>> DicomDecoder::open(const StudyDef& def) {
+  gdcm::Trace::DebugOff();
+  gdcm::Trace::WarningOff();
+  gdcm::Trace::ErrorOff();
   auto state = std::make_unique<State>();
   if (auto read = state->read(def); !read) return std::unexpected(read.error());
   return std::unique_ptr<DicomDecoder>(new DicomDecoder(std::move(state)));

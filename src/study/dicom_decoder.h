@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a DICOM multi-frame object says, and its frames as 8-bit pictures. GDCM parses and
-// decompresses; nothing here is trusted: GDCM 3.0.21 sizes buffers by what the file claims, so
-// this runs in a process of its own (dicom_study.cpp). Private to this room.
+// What a DICOM multi-frame object says, and its frames as 8-bit pictures. Codecs of GDCM and libav
+// are not trusted with a hostile file, so this runs in a process of its own (dicom_study.cpp).
+// Private to this room.
 #pragma once
 #include <filesystem>
 #include <memory>

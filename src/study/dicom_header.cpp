@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "study/dicom_header.h"
 
-#include <gdcmByteValue.h>
-#include <gdcmSequenceOfItems.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 
 #include "study/video_study.h"
 
@@ -17,31 +13,27 @@ namespace {
 constexpr int kLongestSide = 8192;      // pixels; assumed, range 4096 to 16384
 constexpr double kLongestFrame_s = 10;  // no fluoroscopy is slower; assumed, range 2 to 60
 
-/// Reads attributes without trusting lengths; the first problem is kept.
+/// Attributes as text and numbers.
 class Attributes {
  public:
-  explicit Attributes(const gdcm::DataSet& set) : set_(set) {}
+  explicit Attributes(const DataSet& set) : set_(set) {}
 
-  std::optional<std::string> text(const gdcm::Tag& tag) const {
-    if (!set_.FindDataElement(tag)) return std::nullopt;
-    const gdcm::ByteValue* value = set_.GetDataElement(tag).GetByteValue();
-    if (!value || value->GetLength() == 0) return std::nullopt;
-    std::string words(value->GetPointer(), value->GetLength());
-    while (!words.empty() && (words.back() == ' ' || words.back() == '\0')) words.pop_back();
+  std::optional<std::string> text(Tag tag) const {
+    const Element* e = set_.find(tag);
+    if (!e) return std::nullopt;
+    std::string words(e->value);
+    while (words.ends_with(' ') || words.ends_with('\0')) words.pop_back();
     words.erase(0, words.find_first_not_of(' '));
     if (words.empty()) return std::nullopt;
     return words;
   }
-  std::optional<int> word(const gdcm::Tag& tag, std::size_t index = 0) const {
-    if (!set_.FindDataElement(tag)) return std::nullopt;
-    const gdcm::ByteValue* value = set_.GetDataElement(tag).GetByteValue();
-    if (!value || value->GetLength() < 2 * (index + 1)) return std::nullopt;
-    std::uint16_t bits = 0;
-    std::memcpy(&bits, value->GetPointer() + 2 * index, 2);
-    return bits;
+  std::optional<int> word(Tag tag, std::size_t index = 0) const {
+    const Element* e = set_.find(tag);
+    if (!e || e->value.size() < 2 * (index + 1)) return std::nullopt;
+    return static_cast<int>(wordAt(e->value, 2 * index, 2, set_.coding().bigEndian));
   }
   /// Decimal strings, separated by backslashes; empty when any of them is no number.
-  std::vector<double> numbers(const gdcm::Tag& tag) const {
+  std::vector<double> numbers(Tag tag) const {
     std::vector<double> all;
     const auto words = text(tag);
     for (std::size_t at = 0; words && at <= words->size();) {
@@ -57,25 +49,18 @@ class Attributes {
     }
     return all;
   }
-  std::optional<double> number(const gdcm::Tag& tag) const {
+  std::optional<double> number(Tag tag) const {
     const std::vector<double> all = numbers(tag);
     return all.empty() ? std::nullopt : std::optional(all[0]);
   }
-  /// The first item of a sequence.
-  std::optional<gdcm::DataSet> item(const gdcm::Tag& tag) const {
-    if (!set_.FindDataElement(tag)) return std::nullopt;
-    const gdcm::SmartPointer<gdcm::SequenceOfItems> items = set_.GetDataElement(tag).GetValueAsSQ();
-    if (!items || items->GetNumberOfItems() < 1) return std::nullopt;
-    return items->GetItem(1).GetNestedDataSet();
-  }
 
  private:
-  const gdcm::DataSet& set_;
+  const DataSet& set_;
 };
 
 /// SOP class (0008,0016), PS3.4 B.5.
 std::string kindOf(const Attributes& a) {
-  const std::string uid = a.text({0x0008, 0x0016}).value_or("");
+  const std::string uid = a.text(0x00080016).value_or("");
   const std::string base = "1.2.840.10008.5.1.4.1.1.";
   if (uid == base + "12.1" || uid == base + "12.1.1") return "DICOM XA";
   if (uid == base + "12.2" || uid == base + "12.2.1") return "DICOM RF";
@@ -85,15 +70,15 @@ std::string kindOf(const Attributes& a) {
 }
 
 BurnedIn burnedIn(const Attributes& a) {
-  const std::string word = a.text({0x0028, 0x0301}).value_or("");
+  const std::string word = a.text(0x00280301).value_or("");
   return word == "NO" ? BurnedIn::no : word == "YES" ? BurnedIn::yes : BurnedIn::unknown;
 }
 
 /// The order of PS3.3 C.7.6.5 and C.7.6.6: the Frame Increment Pointer's target, then the
 /// recommended rate, then the cine rate. Nothing is assumed.
 Result<void> readTimes(const Attributes& a, double given_hz, DicomHeader& h) {
-  const gdcm::Tag frameTime(0x0018, 0x1063), vector(0x0018, 0x1065), recommended(0x0008, 0x2144),
-      cine(0x0018, 0x0040), pointer(0x0028, 0x0009);
+  constexpr Tag frameTime = 0x00181063, vector = 0x00181065, recommended = 0x00082144,
+                cine = 0x00180040, pointer = 0x00280009;
   const auto even = [&](double step_s, const char* source) -> Result<void> {
     if (!(step_s > 0 && step_s <= kLongestFrame_s))
       return refuse(fmt::format("{} makes frames of {} s, more than 0 and at most {} expected",
@@ -107,8 +92,7 @@ Result<void> readTimes(const Attributes& a, double given_hz, DicomHeader& h) {
   for (std::size_t i = 0; i + 1 < 16; i += 2) {  // pairs of group and element
     const auto group = a.word(pointer, i), element = a.word(pointer, i + 1);
     if (!group || !element) break;
-    const gdcm::Tag target(static_cast<std::uint16_t>(*group),
-                           static_cast<std::uint16_t>(*element));
+    const Tag target = static_cast<Tag>(*group) << 16 | static_cast<Tag>(*element);
     if (target == frameTime) {
       const auto step_ms = a.number(frameTime);
       if (!step_ms)
@@ -147,15 +131,15 @@ Result<void> readTimes(const Attributes& a, double given_hz, DicomHeader& h) {
 }
 
 Result<void> readPixels(const Attributes& a, DicomHeader& h) {
-  h.rows = a.word({0x0028, 0x0010}).value_or(0);
-  h.columns = a.word({0x0028, 0x0011}).value_or(0);
-  h.samples = a.word({0x0028, 0x0002}).value_or(1);
-  h.bitsAllocated = a.word({0x0028, 0x0100}).value_or(0);
-  h.bitsStored = a.word({0x0028, 0x0101}).value_or(h.bitsAllocated);
-  h.planarConfiguration = a.word({0x0028, 0x0006}).value_or(0);
-  h.isSigned = a.word({0x0028, 0x0103}).value_or(0) == 1;
-  h.photometric = a.text({0x0028, 0x0004}).value_or("");
-  const double frames = a.number({0x0028, 0x0008}).value_or(1);
+  h.rows = a.word(0x00280010).value_or(0);
+  h.columns = a.word(0x00280011).value_or(0);
+  h.samples = a.word(0x00280002).value_or(1);
+  h.bitsAllocated = a.word(0x00280100).value_or(0);
+  h.bitsStored = a.word(0x00280101).value_or(h.bitsAllocated);
+  h.planarConfiguration = a.word(0x00280006).value_or(0);
+  h.isSigned = a.word(0x00280103).value_or(0) == 1;
+  h.photometric = a.text(0x00280004).value_or("");
+  const double frames = a.number(0x00280008).value_or(1);
   const char* again = "Export it from the archive again.";
   if (h.rows < 1 || h.columns < 1 || h.rows > kLongestSide || h.columns > kLongestSide)
     return refuse(
@@ -178,7 +162,7 @@ Result<void> readPixels(const Attributes& a, DicomHeader& h) {
     return refuse(fmt::format("has {} samples of {} bits ({} stored) per pixel", h.samples,
                               h.bitsAllocated, h.bitsStored),
                   "Grey of 8 or 16 bits and colour of 8 bits are read.");
-  if (const auto aspect = a.numbers({0x0028, 0x0034}); aspect.size() == 2 && aspect[1] > 0) {
+  if (const auto aspect = a.numbers(0x00280034); aspect.size() == 2 && aspect[1] > 0) {
     h.pixelAspect = aspect[0] / aspect[1];
     if (!(h.pixelAspect > 0.25 && h.pixelAspect < 4))
       return refuse(fmt::format("pixel aspect {}, 1/4 to 4 expected", h.pixelAspect), again);
@@ -187,36 +171,33 @@ Result<void> readPixels(const Attributes& a, DicomHeader& h) {
 }
 
 /// Attributes of the whole object, or of the functional groups that all frames share.
-void readDisplay(const gdcm::DataSet& set, DicomHeader& h) {
-  const Attributes a(set);
-  const auto shared = a.item({0x5200, 0x9229});
-  const auto group = [&](std::uint16_t element) -> std::optional<gdcm::DataSet> {
-    return shared ? Attributes(*shared).item({0x0028, element}) : std::nullopt;
-  };
-  const auto voi = group(0x9132), rescale = group(0x9145);
+void readDisplay(const DataSet& set, DicomHeader& h) {
+  const auto shared = set.item(0x52009229);
+  const auto group = [&](Tag tag) { return shared ? shared->item(tag) : std::nullopt; };
+  const auto voi = group(0x00289132), rescale = group(0x00289145);
   const Attributes window(voi ? *voi : set), modality(rescale ? *rescale : set);
-  h.windowCentre = window.number({0x0028, 0x1050});
-  h.windowWidth = window.number({0x0028, 0x1051});
-  h.slope = modality.number({0x0028, 0x1053}).value_or(1);
-  h.intercept = modality.number({0x0028, 0x1052}).value_or(0);
+  h.windowCentre = window.number(0x00281050);
+  h.windowWidth = window.number(0x00281051);
+  h.slope = modality.number(0x00281053).value_or(1);
+  h.intercept = modality.number(0x00281052).value_or(0);
   if (!h.windowCentre || !h.windowWidth || *h.windowWidth < 1) {
     h.windowCentre.reset();
     h.windowWidth.reset();
-    if (a.item({0x0028, 0x3010}))
+    if (set.find(0x00283010))
       h.warnings.push_back("its VOI LUT (0028,3010) is not applied: full range shown");
   }
   if (h.slope == 0) h.slope = 1;
 }
 }  // namespace
 
-Result<DicomHeader> readHeader(const gdcm::File& file, double frameRate_hz) {
-  const Attributes a(file.GetDataSet());
+Result<DicomHeader> readHeader(const DataSet& set, double frameRate_hz) {
+  const Attributes a(set);
   DicomHeader h;
   h.kind = kindOf(a);
   h.burnedIn = burnedIn(a);
   if (auto read = readPixels(a, h); !read) return std::unexpected(read.error());
   if (auto read = readTimes(a, frameRate_hz, h); !read) return std::unexpected(read.error());
-  readDisplay(file.GetDataSet(), h);
+  readDisplay(set, h);
   return h;
 }
 }  // namespace swallowclip::study

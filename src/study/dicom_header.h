@@ -2,13 +2,11 @@
 // The few attributes of a DICOM object that a moving picture needs. Names as in PS3.3. Private to
 // this room; never handed out as text, since any attribute may hold what it should not.
 #pragma once
-#include <gdcmFile.h>
-
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "study/study.h"
+#include "study/dicom_elements.h"
 
 namespace swallowclip::study {
 
@@ -31,5 +29,5 @@ struct DicomHeader {
 };
 
 /// Refuses what is no moving picture, and times that would have to be guessed.
-Result<DicomHeader> readHeader(const gdcm::File& file, double frameRate_hz);
+Result<DicomHeader> readHeader(const DataSet& set, double frameRate_hz);
 }  // namespace swallowclip::study
