@@ -157,8 +157,8 @@ std::optional<DataSet> DataSet::item(Tag tag) const {
 
 Result<DicomFile> parseMeta(std::string_view bytes) {
   constexpr std::size_t kPreamble = 132;
-  if (bytes.size() >= kPreamble && bytes.substr(kPreamble - 4, 4) == "DICM")
-    bytes.remove_prefix(kPreamble);
+  const bool modern = bytes.size() >= kPreamble && bytes.substr(kPreamble - 4, 4) == "DICM";
+  if (modern) bytes.remove_prefix(kPreamble);
   DicomFile file;
   Walker meta(bytes, {});
   while (meta.peek() >> 16 == 2) {
@@ -172,6 +172,9 @@ Result<DicomFile> parseMeta(std::string_view bytes) {
   if (file.set.size() < 8) return refuse("is no whole DICOM file", "Export it again.");
   const char* implicit = "1.2.840.10008.1.2";
   const char* plain = "1.2.840.10008.1.2.1";
+  if (file.transferSyntax.empty() && modern)
+    return refuse("tells no transfer syntax (0002,0010)",
+                  "It is encrypted or damaged: decrypt it, or export it again.");
   if (file.transferSyntax.empty())  // an object of before 1993: a representation tells itself
     file.transferSyntax = file.set[4] >= 'A' && file.set[5] >= 'A' ? plain : implicit;
   file.coding = {file.transferSyntax != implicit, file.transferSyntax == "1.2.840.10008.1.2.2"};

@@ -5,6 +5,8 @@
 
 namespace swallowclip::study {
 namespace {
+// Of a file that counts no frames, what its end may lack; assumed, range 0.05 to 0.5
+constexpr double kMissing_s = 0.1;
 
 class VideoStudy : public Study {
  public:
@@ -33,6 +35,10 @@ class VideoStudy : public Study {
       return refuse(
           fmt::format("says that it holds {} frames, {} can be read", video.frames, info_.frames()),
           "It is cut off or damaged: copy it again.");
+    if (video.frames == 0 && video.read_s > 0 && video.duration_s - video.read_s > kMissing_s)
+      return refuse(fmt::format("says that it lasts {:.2f} s, but ends at {:.2f} s",
+                                video.duration_s, video.read_s),
+                    "It is cut off or damaged: copy it again.");
     if (auto told = tellTimes(timed); !told) return told;
     info_.kind = "video";
     if (video.interlaced)

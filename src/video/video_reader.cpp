@@ -169,7 +169,8 @@ Result<void> VideoReader::State::open(const std::filesystem::path& path) {
       avcodec_open2(codec.get(), decoder, nullptr) < 0)
     return refuse("can't be decoded");
   if (s->avg_frame_rate.num > 0 && s->avg_frame_rate.den > 0) info.fps = av_q2d(s->avg_frame_rate);
-  if (file->duration > 0) info.duration_s = static_cast<double>(file->duration) / AV_TIME_BASE;
+  if (file->duration > 0 && file->duration_estimation_method != AVFMT_DURATION_FROM_BITRATE)
+    info.duration_s = static_cast<double>(file->duration) / AV_TIME_BASE;
   info.frames = std::max<std::int64_t>(0, s->nb_frames);
   return layOut(s);
 }
@@ -230,6 +231,12 @@ Result<void> VideoReader::State::feed() {
     flushing = true;
     code = avcodec_send_packet(codec.get(), nullptr);
   } else if (code >= 0) {
+    const AVPacket& p = *packet;
+    const std::int64_t begin = p.pts != AV_NOPTS_VALUE ? p.pts : p.dts;
+    if (begin != AV_NOPTS_VALUE)
+      info.read_s =
+          std::max(info.read_s, av_q2d(file->streams[p.stream_index]->time_base) *
+                                    (static_cast<double>(begin) + static_cast<double>(p.duration)));
     if (packet->stream_index == stream) code = avcodec_send_packet(codec.get(), packet.get());
     av_packet_unref(packet.get());
   }

@@ -22,6 +22,7 @@ struct VideoInfo {
   int width = 0, height = 0;  ///< of the pictures handed out: upright, square pixels
   double fps = 0;             ///< average rate; 0 when the file does not say
   double duration_s = 0;      ///< 0 when the file does not say
+  double read_s = 0;          ///< where the pictures and sounds end that were read so far
   std::int64_t frames = 0;    ///< as the container counts them; 0 when it does not say
   bool interlaced = false;    ///< frames so far were made progressive
   bool stretched = false;     ///< pixels were not square

@@ -114,6 +114,16 @@ TEST_F(VideoKinds, DamagedOnesAreRefusedWithoutTheirName) {
     ASSERT_FALSE(study) << share;
     EXPECT_EQ(study.error().text().find("DOE"), std::string::npos) << study.error().text();
   }
+  // Matroska counts no frames, but tells how long it lasts
+  ffmpeg(fmt::format("-f lavfi -i testsrc=d=2:r=30:s=64x48 -c:v ffv1 '{}/DOE.mkv'",
+                     scratch.path().string()));
+  ASSERT_TRUE(Study::open({scratch / "DOE.mkv"}));
+  const std::string long2 = *readFile(scratch / "DOE.mkv");
+  std::ofstream(scratch / "DOE.mkv", std::ios::binary) << long2.substr(0, long2.size() * 7 / 10);
+  auto cut = Study::open({scratch / "DOE.mkv"});
+  ASSERT_FALSE(cut);
+  EXPECT_NE(cut.error().text().find("says that it lasts 2.00 s"), std::string::npos)
+      << cut.error().text();
   // a playlist would open other files
   std::ofstream(scratch / "list.mp4") << "#EXTM3U\n#EXTINF:1,\nDOE.mp4\n";
   EXPECT_FALSE(Study::open({scratch / "list.mp4"}));
@@ -193,12 +203,14 @@ TEST_F(DicomKinds, LiesAreNamed) {
   EXPECT_NE(refusal().find("ends before its pixels do"), std::string::npos) << refusal();
   std::ofstream(path, std::ios::binary) << std::string(132, '\0') + "DICM";
   EXPECT_NE(refusal(), "read");
+  std::ofstream(path, std::ios::binary) << whole.substr(0, 132) + std::string(5000, '\x5a');
+  EXPECT_NE(refusal().find("transfer syntax"), std::string::npos) << refusal();
   // an unknown transfer syntax, as long as the true one
   std::string other = whole;
   const auto at = other.find("1.2.840.10008.1.2.1");
   ASSERT_NE(at, std::string::npos);
   other.replace(at, 19, "1.2.840.10008.1.2.9");
   std::ofstream(path, std::ios::binary) << other;
-  EXPECT_NE(refusal(), "read");
+  EXPECT_NE(refusal().find("transfer syntax that is unknown"), std::string::npos) << refusal();
 }
 }  // namespace swallowclip::study
