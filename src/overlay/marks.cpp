@@ -27,17 +27,6 @@ std::string lower(std::string word) {
   return word;
 }
 
-/// The known name that is meant, whatever its capitals, blanks and hyphens; else a suggestion.
-Result<std::string> knownName(const std::string& word, const std::vector<std::string>& known,
-                              const char* what, const std::string& place) {
-  for (const std::string& name : known)
-    if (lower(name) == lower(word)) return name;
-  const std::string near = nearestName(word, known);
-  return usageError(place, fmt::format("an unknown {}", what),
-                    near.empty() ? fmt::format("Known: {}.", fmt::join(known, ", "))
-                                 : fmt::format("Did you mean \"{}\"?", near));
-}
-
 /// A message without the excerpt of the file's text that the JSON reader adds.
 Error withoutExcerpt(Error error) {
   error.problem = error.problem.substr(0, error.problem.find('\n'));
@@ -91,6 +80,16 @@ Result<Marks> readJson(const std::string& text) {
 }
 }  // namespace
 
+Result<std::string> knownName(const std::string& word, const std::vector<std::string>& known,
+                              const char* what, const std::string& place) {
+  for (const std::string& name : known)
+    if (lower(name) == lower(word)) return name;
+  const std::string near = nearestName(word, known);
+  return usageError(place, fmt::format("an unknown {}", what),
+                    near.empty() ? fmt::format("Known: {}.", fmt::join(known, ", "))
+                                 : fmt::format("Did you mean \"{}\"?", near));
+}
+
 const std::vector<std::string>& eventNames() {
   static const std::vector<std::string> names{"tongue_onset", "BPM", "HYB",  "LVC",    "UESO",
                                               "UESMax",       "MPC", "UESC", "LVCoff", "SwRest"};
@@ -131,6 +130,7 @@ std::vector<std::string> landmarkNames() {
   return names;
 }
 
+namespace {
 Result<Marks> checkedMarks(Marks marks, const study::StudyInfo& study) {
   const auto refuse = [](const std::string& problem, const std::string& remedy) {
     return usageError(kPlace, problem, remedy);
@@ -190,6 +190,7 @@ Result<Marks> checkedMarks(Marks marks, const study::StudyInfo& study) {
     return refuse("scale \"calibration\" without a calibration object", "Add one.");
   return marks;
 }
+}  // namespace
 
 Result<Marks> loadMarks(const std::filesystem::path& path, const study::StudyInfo& study) {
   auto text = readFile(path);
@@ -201,16 +202,6 @@ Result<Marks> loadMarks(const std::filesystem::path& path, const study::StudyInf
   const bool json = first != std::string::npos && (*text)[first] == '{';
   auto marks = json ? readJson(*text) : readCsv(*text);
   if (!marks) return marks;
-  for (StudyEvent& e : marks->events) {
-    auto name = knownName(e.name, eventNames(), "event", kPlace);
-    if (!name) return std::unexpected(name.error());
-    e.name = *name;
-  }
-  for (MarkedPoint& p : marks->points) {
-    auto name = knownName(p.name, landmarkNames(), "landmark", kPlace);
-    if (!name) return std::unexpected(name.error());
-    p.name = *name;
-  }
   return checkedMarks(std::move(*marks), study);
 }
 }  // namespace swallowclip::overlay

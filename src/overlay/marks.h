@@ -53,9 +53,11 @@ struct LandmarkKind {
 };
 const std::vector<LandmarkKind>& landmarkKinds();
 std::vector<std::string> landmarkNames();
+/// The known name that is meant, whatever its capitals, blanks and hyphens; else a suggestion.
+Result<std::string> knownName(const std::string& word, const std::vector<std::string>& known,
+                              const char* what, const std::string& place);
 
 /// Checked against the study: frames and points lie in it, events are in a possible order, no two
 /// landmarks of a frame share a spot.
 Result<Marks> loadMarks(const std::filesystem::path& path, const study::StudyInfo& study);
-Result<Marks> checkedMarks(Marks marks, const study::StudyInfo& study);
 }  // namespace swallowclip::overlay

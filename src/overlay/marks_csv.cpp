@@ -9,9 +9,12 @@ namespace swallowclip::overlay {
 namespace {
 constexpr std::size_t kMaxRows = 100000;  // assumed, range 1e4 to 1e6
 
+std::string place(std::size_t row) {
+  return fmt::format("events file, row {}", row);
+}
 std::unexpected<Error> refuse(std::size_t row, const std::string& problem,
                               const std::string& remedy) {
-  return usageError(fmt::format("events file, row {}", row), problem, remedy);
+  return usageError(place(row), problem, remedy);
 }
 
 std::string trimmed(const std::string& cell) {
@@ -98,14 +101,18 @@ Result<void> readRow(const Table& t, const std::vector<std::string>& cells, std:
     return refuse(row, "the frame is no whole number", "Correct it.");
   if (kind == "event") {
     if (!frame) return refuse(row, "an event without a frame", "Add it, or remove the row.");
-    marks.events.push_back({Table::at(cells, t.name), static_cast<int>(*frame)});
+    auto name = knownName(Table::at(cells, t.name), eventNames(), "event", place(row));
+    if (!name) return std::unexpected(name.error());
+    marks.events.push_back({*name, static_cast<int>(*frame)});
     return {};
   }
   if (kind != "landmark" && kind != "calibration")
     return refuse(row, "an unknown kind", "Known: event, landmark, calibration.");
   if (!x || !y) return refuse(row, "a point without x_px and y_px", "Add them.");
   if (kind == "landmark") {
-    MarkedPoint point{Table::at(cells, t.name), std::nullopt, {*x, *y}};
+    auto name = knownName(Table::at(cells, t.name), landmarkNames(), "landmark", place(row));
+    if (!name) return std::unexpected(name.error());
+    MarkedPoint point{*name, std::nullopt, {*x, *y}};
     if (frame) point.frame = static_cast<int>(*frame);
     marks.points.push_back(point);
     return {};

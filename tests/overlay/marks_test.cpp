@@ -106,6 +106,7 @@ TEST(Marks, MistakesAreNamed) {
       {"kind,name,frame\nevent,BPM,\n", "an event without a frame"},
       {"kind,name,frame\nevent,BPM,3.5\n", "no whole number"},
       {"kind,name,frame\nsight,BPM,3\n", "unknown kind"},
+      {"kind,name,frame\nevent,HYB,2\nevent,BPN,3\n", "row 3: an unknown event"},
       {"a,b\n1,2\n", "must name the columns"},
       {"kind,name,frame,x,y\nevent,BPM,3\ncalibration,20,,1,1\n", "one end of a calibration"},
       {R"({"version": 2, "events": {"BPM": 3}})", "version"},
