@@ -12,10 +12,11 @@
 
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/common_interface_defs.h>
-// No RLIMIT_AS with a sanitizer: this keeps claimed lengths from filling the machine instead. What is
-// freed is kept for a while only: every decoder's process begins as a copy of all of it.
+// No RLIMIT_AS with a sanitizer: refusing single large claims, as malloc may, keeps them from
+// filling the machine instead. What is freed is kept for a while only: every decoder's process
+// begins as a copy of all of it.
 extern "C" const char* __asan_default_options() {
-  return "max_allocation_size_mb=64:quarantine_size_mb=4";
+  return "max_allocation_size_mb=64:allocator_may_return_null=1:quarantine_size_mb=4";
 }
 #endif
 
@@ -82,7 +83,9 @@ std::string firstFinding(const std::filesystem::path& folder) {
     if (!entry.path().filename().string().starts_with("report.")) continue;
     const std::string report = readFile(entry.path()).value_or("unreadable");
     std::filesystem::remove(entry.path());
-    if (report.find("allocation-size-too-big") == std::string::npos) return report;
+    const auto says = [&](const char* words) { return report.find(words) != std::string::npos; };
+    const bool refusedClaim = says("allocation-size-too-big") || says("out-of-memory");
+    if ((says("ERROR: ") && !refusedClaim) || says("runtime error: ")) return report;
   }
   return "";
 }
