@@ -228,7 +228,8 @@ void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
     const double half = def_.inletHalfWidth(d);
     const double width = std::max(def_.closedGap_m / 2 / half, 1 - glottis);
     const Vec2 q = squareToDisc(2 * a - 1, b);
-    const double follow = 1 - 0.5 * smoothstep((d - 0.7) / 0.3);  // the trachea stretches
+    // the trachea stretches: its lower end stays at the chest, assumed
+    const double follow = 1 - smoothstep((d - 0.62) / 0.38);
     return Vec3(front + (back - front) * ap * (0.5 + 0.5 * q.x()) +
                 Vec3::UnitX() * half * width * q.y() + pose.larynxShift_m * follow);
   };

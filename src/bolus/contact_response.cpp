@@ -52,7 +52,8 @@ void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& 
     }
 }
 
-bool projectInside(const WallField& field, double spacing_m, Vec3& x, std::vector<Contact>& out) {
+bool projectInside(const WallField& field, double spacing_m, bool film, Vec3& x,
+                   std::vector<Contact>& out) {
   const double reach = kContactReach * spacing_m, longest = kLongestPush * spacing_m;
   const Vec3 start = x;
   bool wasOutside = false;
@@ -66,9 +67,10 @@ bool projectInside(const WallField& field, double spacing_m, Vec3& x, std::vecto
     wasOutside = true;
     x = out[0].point + kJustInside * spacing_m * out[0].inward;
   }
-  // Between sheets that cross there is no inside: hopping from one to the other leads far away.
-  if (wasOutside && (x - start).norm() > longest) stayAt(start);
-  if (out.empty() || out[0].distance_m < 0) return wasOutside;
+  // Between sheets that cross the way inside can be far: bit by bit too.
+  if (const double away = (x - start).norm(); wasOutside && away > longest)
+    stayAt(start + longest / away * (x - start));
+  if (film || out.empty() || out[0].distance_m < 0) return wasOutside;
   const Vec3 before = x;
   keepDistance(out, spacing_m, x);
   if (x == before) return wasOutside;

@@ -24,8 +24,8 @@ void clampVelocity(const std::vector<Contact>& contacts, double spacing_m, doubl
 /// Moves x away from the walls that it is nearer to than it may be.
 void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& x);
 
-/// Moves x to where it keeps its distance and leaves the contacts of that place. Returns true when
-/// it was outside (and has been brought back).
-bool projectInside(const WallField& field, double spacing_m, Vec3& x,
+/// Moves x to where it keeps its distance (a film: just inside) and leaves the contacts of that
+/// place; bit by bit where that is far. Returns true when it was outside.
+bool projectInside(const WallField& field, double spacing_m, bool film, Vec3& x,
                    std::vector<Contact>& contacts);
 }  // namespace swallowclip::bolus

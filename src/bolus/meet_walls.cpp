@@ -97,7 +97,7 @@ void Solver::Impl::keepOutOfSlits(int i) {
     return;
   std::vector<Contact> before;
   Vec3 place = carried[i].first;
-  projectInside(field, def.spacing_m, place, before);
+  projectInside(field, def.spacing_m, false, place, before);
   if (before.empty() || before[0].distance_m < 0 || localGap_m(before) < shut_m) return;
   particles.positions[i] = place;
   particles.velocities[i] = carried[i].second;
@@ -177,7 +177,8 @@ void Solver::Impl::sampleWallsOf(int i) {
 
 bool Solver::Impl::findContacts(int i) {
   Vec3& x = particles.positions[i];
-  const bool wasOutside = projectInside(field, def.spacing_m, x, contacts[i]);
+  const bool film = particles.state[i] == State::film;
+  const bool wasOutside = projectInside(field, def.spacing_m, film, x, contacts[i]);
   contactsAt[i] = x;
   return wasOutside;
 }

@@ -58,6 +58,7 @@ struct Solver::Impl {
   void chooseSound(double speed_ms);
   void project(double dt_s, Substep& report);
   void pushExplicitly(double dt_s, Substep& report);
+  void leaveInSlits(double dt_s);
   void move(double dt_s, Substep& report);
   int clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const;
   void measure(Substep& s);
