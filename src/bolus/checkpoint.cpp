@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000001;  // "SWBC", layout 1
+constexpr std::uint64_t kMark = 0x53574243'00000002;  // "SWBC", layout 2
 
 class Writer {
  public:
@@ -90,6 +90,7 @@ void all(Archive& a, Impl& s) {
   a(s.wallsBefore);
   a(s.fastestWall_ms);
   a(s.lastStep_s);
+  a(s.viscosity.shearRates_s());
   a(s.wallTriangles);
   a(s.caps);
   a(s.shutBefore);

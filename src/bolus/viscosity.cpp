@@ -196,17 +196,20 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
                                    double dt_s, double support_m, std::vector<Vec3>& v) {
   const int n = f.count();
   wallDrag_.assign(v.size(), 0.0);
+  shearRate_s_.resize(v.size(), NAN);
   viscosity_.resize(n);
   right_.resize(n);
   inverse_.resize(n);
   own_.assign(n + 1, 0.f);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->assign(n + 1);
+  const bool constant = scheme.override_Pas > 0 || fluid.model == RheologyModel::newtonian;
+  const double constant_Pas = scheme.override_Pas > 0 ? scheme.override_Pas : fluid.viscosity_Pas;
   f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i)
-      viscosity_[i] = scheme.override_Pas > 0 ? scheme.override_Pas
-                      : fluid.model == RheologyModel::newtonian
-                          ? fluid.viscosity_Pas
-                          : apparentViscosity_Pas(fluid, shearRate_s(velocityGradient_s(f, v, i)));
+    for (int i = begin; i < end; ++i) {
+      double& rate = shearRate_s_[f.particle(i)];
+      if (!constant && std::isnan(rate)) rate = shearRate_s(velocityGradient_s(f, v, i));
+      viscosity_[i] = constant ? constant_Pas : apparentViscosity_Pas(fluid, rate);
+    }
   });
   assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
   for (int i = 0; i < n; ++i) {
@@ -226,6 +229,13 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
     drag.run(begin, end);
     for (int i = begin; i < end; ++i)
       v[f.particle(i)] = (right_[i] - Vec3(&force_[3 * i])) / (1 + wallDrag_[f.particle(i)]);
+  });
+  // The next step's viscosities follow from this field, before pressure has its say: what it does to
+  // single particles is noise, which would thin a fluid that ought to be stiff.
+  shearRate_s_.assign(v.size(), NAN);
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; !constant && i < end; ++i)
+      shearRate_s_[f.particle(i)] = shearRate_s(velocityGradient_s(f, v, i));
   });
   return report;
 }

@@ -32,6 +32,9 @@ class Viscosity {
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
   const std::vector<double>& wallDrag() const { return wallDrag_; }
 
+  /// [particle] of the last step, 1/s: what the next one's viscosities follow from.
+  std::vector<double>& shearRates_s() { return shearRate_s_; }
+
  private:
   void assemble(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
                 double support_m);
@@ -40,6 +43,7 @@ class Viscosity {
                           double support_m) const;
   Report solve(const Flow& flow);
 
+  std::vector<double> shearRate_s_;             // [particle] NaN where not yet known
   std::vector<double> wallDrag_;                // [particle]
   std::vector<double> viscosity_, force_;       // [slot]; [slot][3]
   std::vector<float> mu_;                       // [slot + 1]
