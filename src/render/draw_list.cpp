@@ -184,13 +184,6 @@ DrawList buildDrawList(const frame::History& history, int frame, const FrameGeom
     return *std::find_if(geometry.parts.begin(), geometry.parts.end(),
                          [&](const Part& p) { return p.name == item.name; });
   };
-  const Vec3f back = (view.eye_m - view.target_m).normalized().cast<float>();
-  const auto depth = [&](const DrawItem& a) {
-    const Vec3f& rest = geometry.vertices[a.mesh.firstVertex].rest;
-    return std::pair(std::round(back.dot(rest) * 1e4f), a.name);
-  };
-  std::sort(list.ghost.begin(), list.ghost.end(),
-            [&](const DrawItem& a, const DrawItem& b) { return depth(a) < depth(b); });
   const float outline_m =
       preset.sectionOutline_m > 0
           ? std::max(preset.sectionOutline_m, kLeastOutline_px * pixelSize_m(view, preset))

@@ -49,7 +49,7 @@ struct DrawList {
   std::vector<std::uint32_t> indices;
   std::vector<Vertex> extra;    ///< sections, and skins for fluoroscopy
   std::vector<DrawItem> solid;  ///< in order of section priority, the bolus last
-  std::vector<DrawItem> ghost;  ///< back to front as on the first frame, so that order never flips
+  std::vector<DrawItem> ghost;
   std::vector<DrawItem> air, body;  ///< fluoroscopy: the lumen, and the skin of head and neck
   double barium_kgm3 = 0;           ///< barium sulfate in the bolus
   float referenceDepth = 2.5f;      ///< optical depth that the exposure is set for

@@ -133,6 +133,13 @@ Result<void> Target::create(const char* what, int width, int height, GLenum colo
   return {};
 }
 
+void Target::copyDepth(const Target& other) {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, other.id_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, id_);
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, id_);
+}
+
 void Target::testAgainst(const Target& other) {
   glBindFramebuffer(GL_FRAMEBUFFER, id_);
   glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, other.depth_.id(), 0);

@@ -90,6 +90,12 @@ class Target {
  public:
   Target() = default;
   ~Target();
+  Target(Target&& b) noexcept
+      : id_(std::exchange(b.id_, 0)),
+        width_(b.width_),
+        height_(b.height_),
+        colour_(std::move(b.colour_)),
+        depth_(std::move(b.depth_)) {}
   Target(const Target&) = delete;
   Target& operator=(const Target&) = delete;
 
@@ -98,6 +104,8 @@ class Target {
                       GLenum depthFormat);
   /// Depth of another target of the same size, to be tested and not written.
   void testAgainst(const Target& other);
+  /// Takes over the depth (and stencil) of another target of the same size and format.
+  void copyDepth(const Target& other);
   void bind() const;
   const Texture& colour() const { return colour_; }
   const Texture& depth() const { return depth_; }

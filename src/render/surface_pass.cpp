@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/background.h"
 #include "render/colour_vision.h"
 #include "render/edges.h"
 
 namespace swallowclip::render {
 namespace {
-
 constexpr int kAoShare = 4;               // occlusion is smooth: one value for 4 x 4 pixels
 constexpr float kAoRange = 0.4f;          // depths this share of the radius apart are not mixed
 constexpr float kShadowBias_m = 0.8e-3f;  // about 3 texels of a 1024 map over 250 mm
@@ -40,25 +40,6 @@ float idLevel(std::size_t index) {
 
 int shareOf(int pixels) {
   return (pixels + kAoShare - 1) / kAoShare;
-}
-
-// What stands behind everything; half a level of fixed ordered noise hides the bands of the dark
-// colours. Alpha 0: no structure.
-Image makeBackground(const RenderPreset& preset) {
-  Image image(preset.width, preset.height);
-  for (int y = 0; y < image.height; ++y) {
-    const float up = 1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height);
-    const float f = up * up * (3 - 2 * up);
-    const Colour sky = (1 - f) * preset.background.bottom_srgb + f * preset.background.top_srgb;
-    for (int x = 0; x < image.width; ++x) {
-      const float noise = static_cast<float>((x * 5 + y * 3) & 7) / 8 - 0.4375f;
-      for (int k = 0; k < 3; ++k)
-        image.row(y)[4 * x + k] =
-            static_cast<std::uint8_t>(std::clamp(std::lround(255 * sky[k] + noise), 0L, 255L));
-      image.row(y)[4 * x + 3] = 0;
-    }
-  }
-  return image;
 }
 
 // sRGB of a square root of linear, both in 8 bits.
@@ -96,7 +77,8 @@ Result<void> SurfacePass::create(const std::filesystem::path& dir, const RenderP
       shadow_.create("shadow map", map, map, 0, GL_DEPTH_COMPONENT32F),
       aoRaw_.create("occlusion", shareOf(w), shareOf(h), GL_RG32F, 0),
       aoSmooth_.create("occlusion, smooth", shareOf(w), shareOf(h), GL_RG32F, 0),
-      picture_.create("picture", w, h, GL_RGBA8, 0)};
+      picture_.create("picture", w, h, GL_RGBA8, 0),
+      ghosts_.create(dir, w, h)};
   for (const auto& m : made)
     if (!m) return m;
   picture_.testAgainst(scene_);
@@ -250,30 +232,45 @@ void SurfacePass::drawSolids(const DrawList& list, const Camera& camera,
   cullBack(false);
 }
 
-// Depth first, so that only the nearest layer of a ghost is seen.
-void SurfacePass::drawGhosts(const DrawList& list, const Camera& camera,
-                             const RenderPreset& preset) {
-  if (list.ghost.empty()) return;
+void SurfacePass::drawGhost(const DrawItem& item, const Camera& camera,
+                            const RenderPreset& preset) {
+  surfaceOf(item, 1.0f, item.opacity);
+  mesh_->draw(item);
+  drawOutlines(item, camera, preset, std::sqrt(item.opacity));
+}
+
+// Of each ghost only the nearest surface is seen, and the number of the nearest one kept.
+Result<void> SurfacePass::drawGhosts(const DrawList& list, const Camera& camera,
+                                     const RenderPreset& preset) {
+  const std::size_t count = list.ghost.size();
+  glDepthFunc(GL_LEQUAL);
+  for (std::size_t i = 0; count > 1 && i < count; ++i) {
+    if (auto ok = ghosts_.begin(i, scene_); !ok) return ok;
+    shadow_.depth().bind(0);
+    drawGhost(list.ghost[i], camera, preset);
+  }
+  clipping(false);
+  if (count > 1) ghosts_.resolve(count, scene_, *mesh_);
+  clipping(true);
   scene_.bind();
   glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  shadow_.depth().bind(0);
-  for (std::size_t i = 0; i < list.ghost.size(); ++i) {
-    const DrawItem& item = list.ghost[i];
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+  for (std::size_t i = 0; i < count; ++i) {
     flat_.use();
     flat_.set("uId", idLevel(list.solid.size() + i));
-    setClips(flat_, item.cuts);
-    mesh_->draw(item);
+    setClips(flat_, list.ghost[i].cuts);
+    mesh_->draw(list.ghost[i]);
+  }
+  if (count == 1) {  // needs no layer
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+    shadow_.depth().bind(0);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glEnable(GL_BLEND);
-    surfaceOf(item, 1.0f, item.opacity);
-    mesh_->draw(item);
-    drawOutlines(item, camera, preset, std::sqrt(item.opacity));
+    drawGhost(list.ghost[0], camera, preset);
     glDisable(GL_BLEND);
   }
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  return {};
 }
 
 void SurfacePass::drawOcclusion(const Camera& camera, const RenderPreset& preset) {
@@ -349,7 +346,7 @@ Result<Image> SurfacePass::draw(const GpuMesh& mesh, const DrawList& list, const
   clipping(false);
   if (preset.ao.strength > 0) drawOcclusion(camera, preset);
   clipping(true);
-  drawGhosts(list, camera, preset);
+  if (auto ok = drawGhosts(list, camera, preset); !ok) return std::unexpected(ok.error());
   clipping(false);
   if (preset.ao.strength > 0)
     composite(camera, preset);
@@ -364,6 +361,9 @@ Result<Image> SurfacePass::draw(const GpuMesh& mesh, const DrawList& list, const
 Result<void> SurfacePass::begin(const GpuMesh& mesh, const DrawList& list, bool onlyIds) {
   if (list.solid.size() + list.ghost.size() > kMostIds)
     return failure("view", fmt::format("more than {} structures", kMostIds),
+                   "Hide some in the view.");
+  if (list.ghost.size() > GhostLayers::kMost)
+    return failure("view", fmt::format("more than {} ghosted structures", GhostLayers::kMost),
                    "Hide some in the view.");
   mesh_ = &mesh;
   onlyIds_ = onlyIds;

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "render/draw_list.h"
+#include "render/ghost_layers.h"
 #include "render/gpu_mesh.h"
 
 namespace swallowclip::render {
@@ -33,7 +34,8 @@ class SurfacePass {
   void drawCaps(const DrawItem& item, const Camera& camera, float id);
   void drawOutlines(const DrawItem& item, const Camera& camera, const RenderPreset& preset,
                     float alpha);
-  void drawGhosts(const DrawList& list, const Camera& camera, const RenderPreset& preset);
+  void drawGhost(const DrawItem& item, const Camera& camera, const RenderPreset& preset);
+  Result<void> drawGhosts(const DrawList& list, const Camera& camera, const RenderPreset& preset);
   void drawOcclusion(const Camera& camera, const RenderPreset& preset);
   void setSpiral(int taps);
   void composite(const Camera& camera, const RenderPreset& preset);
@@ -43,6 +45,7 @@ class SurfacePass {
 
   Program smooth_, detailed_, section_, flat_, depthOnly_, ao_, blur_, composite_;
   Target scene_, shadow_, aoRaw_, aoSmooth_, picture_;
+  GhostLayers ghosts_;
   Image background_;
   std::array<std::uint8_t, 256> encoding_{};
   const GpuMesh* mesh_ = nullptr;  ///< what is being drawn

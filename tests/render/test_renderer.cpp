@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "render/colour_vision.h"
 #include "render/renderer.h"
 #include "shapes.h"
 
@@ -136,6 +137,50 @@ TEST(Renderer, SameInputsSameBytes) {
   ASSERT_TRUE(r.has_value());
   ASSERT_TRUE(r->draw(busyScene(10), 0, "oblique", {}).has_value());
   EXPECT_EQ(r->draw(h, 0, "oblique", {})->rgba, a.rgba);
+}
+
+TEST(Renderer, GhostsBlendByDepthWhateverTheirOrder) {
+  RenderPreset p = test::flatPreset(100, 100);
+  p.smoothEdges = false;
+  const Colour red(0.9f, 0.1f, 0.1f), green(0.1f, 0.9f, 0.1f), blue(0.1f, 0.1f, 0.9f);
+  for (const auto& [name, colour] : {std::pair("red", red), {"green", green}, {"blue", blue}}) {
+    p.materials[name] = p.fallback;
+    p.materials[name].baseColour_srgb = colour;
+  }
+  p.views["side"].ghosted = {{"front", 0.5f}, {"middle", 0.5f}};
+  const auto slab = [](const char* name, const char* material, float x) {
+    auto s = test::box(name, {x, -0.02f, -0.02f}, {x + 0.005f, 0.02f, 0.02f});
+    s.material = material;
+    return s;
+  };
+  const auto front = slab("front", "red", 0.02f), middle = slab("middle", "green", 0);
+  const auto back = slab("back", "blue", -0.02f);
+  const Image image = picture(p, test::still({front, middle, back}), "side");
+  EXPECT_EQ(image.rgba, picture(p, test::still({back, middle, front}), "side").rgba);
+  // seen head-on a ghost is 0.55 as opaque as it is called (solid.frag); mixed in square roots
+  const float seen = 0.55f * 0.5f;
+  const auto root = [](const Colour& c) { return Colour(linear(c).cwiseSqrt()); };
+  const Colour mixed =
+      seen * root(red) + (1 - seen) * (seen * root(green) + (1 - seen) * root(blue));
+  for (int k = 0; k < 3; ++k) {
+    const double got = image.row(50)[4 * 50 + k] / 255.0;
+    const double gotRoot = std::sqrt(got <= 0.04045 ? got / 12.92 : std::pow((got + 0.055) / 1.055, 2.4));
+    EXPECT_NEAR(gotRoot, mixed[k], 0.012) << "channel " << k;
+  }
+}
+
+TEST(Renderer, ANinthGhostIsRefused) {
+  RenderPreset p = test::flatPreset(60, 60);
+  std::vector<frame::StructureTrack> parts;
+  for (int i = 0; i < 9; ++i) {
+    parts.push_back(test::box(fmt::format("g{}", i), {0, 0, 0}, {0.01f, 0.01f, 0.01f}));
+    p.views["side"].ghosted[parts.back().name] = 0.5f;
+  }
+  auto r = Renderer::create(test::kShaders, p);
+  ASSERT_TRUE(r.has_value());
+  const auto image = r->draw(test::still(parts), 0, "side", {});
+  ASSERT_FALSE(image.has_value());
+  EXPECT_NE(image.error().text().find("ghosted"), std::string::npos);
 }
 
 TEST(Renderer, ShowsTheBolus) {
