@@ -10,6 +10,7 @@ namespace swallowclip::anatomy {
 namespace {
 constexpr double kNormalSpan_m = 6e-3;    // half span of the midline's tangent; assumed, 4-8 mm
 constexpr double kClampWidth_m = 0.5e-3;  // softness of velum-wall contact; assumed, 0.2-1 mm
+constexpr double kClosingLag = 1;         // of the mouth behind the folds, in closing times; assumed, 0.5-1
 constexpr double kArchPower = 2.5;        // palate arch fitted to the shape of clinical-reference 5
 constexpr double kPortHalfU = 0.5, kInletHalfU = 0.42;  // share of the width the openings take
 
@@ -217,8 +218,11 @@ void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
   const auto section = [&](double d, double a, double b) {
     const Vec3 front(0, def_.inletFrontY(d), def_.inletFrontZ(d));
     const Vec3 back(0, def_.inletBackY(d), def_.inletBackZ(d));
-    // Vestibule closes in the sagittal plane, the folds at d = 0.55 from the sides.
-    const double shut = (1 - pose.inletOpen) * (1 - smoothstep((d - 0.45) / 0.15));
+    // Vestibule closes in the sagittal plane, from the folds (at d = 0.55, which close from the
+    // sides) upwards (clinical-reference section 2), so that what has got in is pushed out.
+    const double lag = kClosingLag * (1 - std::min(d / 0.45, 1.0));
+    const double closing = std::clamp((1 - pose.inletOpen) * (1 + kClosingLag) - lag, 0.0, 1.0);
+    const double shut = closing * (1 - smoothstep((d - 0.45) / 0.15));
     const double glottis = (1 - pose.glottisOpen) * plateau(d, 0.47, 0.53, 0.57, 0.64);
     const double depth_m = (back - front).norm();
     // Near its mouth the vestibule is as open as the mouth itself.
