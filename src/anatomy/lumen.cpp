@@ -10,7 +10,7 @@ namespace swallowclip::anatomy {
 namespace {
 constexpr double kNormalSpan_m = 6e-3;    // half span of the midline's tangent; assumed, 4-8 mm
 constexpr double kClampWidth_m = 0.5e-3;  // softness of velum-wall contact; assumed, 0.2-1 mm
-constexpr double kClosingLag = 1;         // of the mouth behind the folds, in closing times; assumed, 0.5-1
+constexpr double kClosingLead = 1;        // by how much the folds lead the mouth; assumed, 0.5-2
 constexpr double kArchPower = 2.5;        // palate arch fitted to the shape of clinical-reference 5
 constexpr double kPortHalfU = 0.5, kInletHalfU = 0.42;  // share of the width the openings take
 
@@ -220,9 +220,9 @@ void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
     const Vec3 back(0, def_.inletBackY(d), def_.inletBackZ(d));
     // Vestibule closes in the sagittal plane, from the folds (at d = 0.55, which close from the
     // sides) upwards (clinical-reference section 2), so that what has got in is pushed out.
-    const double lag = kClosingLag * (1 - std::min(d / 0.45, 1.0));
-    const double closing = std::clamp((1 - pose.inletOpen) * (1 + kClosingLag) - lag, 0.0, 1.0);
-    const double shut = closing * (1 - smoothstep((d - 0.45) / 0.15));
+    const double closing =
+        std::min((1 - pose.inletOpen) * (1 + kClosingLead * std::min(d / 0.53, 1.0)), 1.0);
+    const double shut = closing * (1 - smoothstep((d - 0.53) / 0.12));
     const double glottis = (1 - pose.glottisOpen) * plateau(d, 0.47, 0.53, 0.57, 0.64);
     const double depth_m = (back - front).norm();
     // Near its mouth the vestibule is as open as the mouth itself.
@@ -232,10 +232,12 @@ void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
     const double half = def_.inletHalfWidth(d);
     const double width = std::max(def_.closedGap_m / 2 / half, 1 - glottis);
     const Vec2 q = squareToDisc(2 * a - 1, b);
-    // the trachea stretches: its lower end stays at the chest, assumed
-    const double follow = 1 - smoothstep((d - 0.62) / 0.38);
+    // the trachea stretches: its lower end stays at its height and comes half as far forward, assumed
+    const double height = 1 - smoothstep((d - 0.62) / 0.38);
+    const double forward = 1 - 0.5 * smoothstep((d - 0.7) / 0.3);
+    const Vec3 shift = pose.larynxShift_m.cwiseProduct(Vec3(forward, forward, height));
     return Vec3(front + (back - front) * ap * (0.5 + 0.5 * q.x()) +
-                Vec3::UnitX() * half * width * q.y() + pose.larynxShift_m * follow);
+                Vec3::UnitX() * half * width * q.y() + shift);
   };
   const auto place = [&](int i, int j) {
     return std::array{static_cast<double>(i) / nr, 2.0 * j / nc - 1};

@@ -15,6 +15,8 @@
 
 namespace swallowclip::bolus {
 
+inline constexpr double kInfeasibleFor_s = 0.02;  // a pocket without room, before it is said; DESIGN 5
+
 struct Solver::Impl {
   Impl(const BolusDef& d, const WallMotion& m, int threads);
 

@@ -204,12 +204,14 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
 }
 
 void Solver::Impl::leaveInSlits(double dt_s) {
+  stats.leftInSlits *= std::exp(-dt_s / kInfeasibleFor_s);
   for (std::size_t i = 0; i < active.size(); ++i) {
     if (!active[i] || localGap_m(contacts[i]) > kShotOutGap * def.spacing_m) continue;
     const Vec3& v = particles.velocities[i];
     if ((v - contacts[i][0].velocity).norm() < kShotOut_ms && !outruns(dt_s, moving[i])) continue;
     particles.state[i] = State::film;
     active[i] = 0;
+    ++stats.leftInSlits;
   }
 }
 
