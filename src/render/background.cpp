@@ -22,4 +22,14 @@ Image makeBackground(const RenderPreset& preset) {
   }
   return image;
 }
+
+std::array<std::uint8_t, 256> makeEncoding() {
+  std::array<std::uint8_t, 256> table{};
+  for (int i = 0; i < 256; ++i) {
+    const double c = i * i / (255.0 * 255.0);
+    const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+    table[i] = static_cast<std::uint8_t>(std::lround(255 * srgb));
+  }
+  return table;
+}
 }  // namespace swallowclip::render

@@ -42,16 +42,6 @@ int shareOf(int pixels) {
   return (pixels + kAoShare - 1) / kAoShare;
 }
 
-// sRGB of a square root of linear, both in 8 bits.
-std::array<std::uint8_t, 256> makeEncoding() {
-  std::array<std::uint8_t, 256> table{};
-  for (int i = 0; i < 256; ++i) {
-    const double c = i * i / (255.0 * 255.0);
-    const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-    table[i] = static_cast<std::uint8_t>(std::lround(255 * srgb));
-  }
-  return table;
-}
 }  // namespace
 
 Result<void> SurfacePass::create(const std::filesystem::path& dir, const RenderPreset& preset) {
@@ -380,19 +370,27 @@ void SurfacePass::countIds(const std::vector<DrawItem>& items, std::size_t first
   for (std::size_t i = 0; i < items.size(); ++i) counts[items[i].name] += seen[first + i + 1];
 }
 
-Result<std::map<std::string, int>> SurfacePass::visiblePixels(const GpuMesh& mesh,
-                                                              const DrawList& list,
+Result<std::map<std::string, int>> SurfacePass::visiblePixels(const GpuMesh& mesh, DrawList list,
                                                               const Camera& camera,
                                                               const RenderPreset& preset) {
   if (auto ok = begin(mesh, list, true); !ok) return std::unexpected(ok.error());
+  std::vector<DrawItem> bolus;  // comes last in the list
+  if (!list.solid.empty() && list.solid.back().name == "bolus") {
+    bolus.push_back(std::move(list.solid.back()));
+    list.solid.pop_back();
+  }
   drawSolids(list, camera, preset);
   std::map<std::string, int> counts;
   countIds(list.solid, 0, preset, counts);
-  for (std::size_t i = 0; i < list.ghost.size(); ++i) {
-    surfaceOf(list.ghost[i], idLevel(list.solid.size() + i), 1.0f);
-    mesh_->draw(list.ghost[i]);
+  std::size_t first = list.solid.size();
+  for (const auto* items : {&bolus, &list.ghost}) {
+    for (std::size_t i = 0; i < items->size(); ++i) {
+      surfaceOf((*items)[i], idLevel(first + i), 1.0f);
+      mesh_->draw((*items)[i]);
+    }
+    if (!items->empty()) countIds(*items, first, preset, counts);
+    first += items->size();
   }
-  if (!list.ghost.empty()) countIds(list.ghost, list.solid.size(), preset, counts);
   clipping(false);
   if (auto ok = checkedGl("surfaces"); !ok) return std::unexpected(ok.error());
   return counts;

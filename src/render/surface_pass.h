@@ -19,9 +19,9 @@ class SurfacePass {
   /// `mesh` holds the list.
   Result<Image> draw(const GpuMesh& mesh, const DrawList& list, const Camera& camera,
                      const RenderPreset& preset);
-  /// Pixels in which each item of the list is the nearest, by name; ghosts cover nothing but
-  /// themselves. Without smoothing of edges.
-  Result<std::map<std::string, int>> visiblePixels(const GpuMesh& mesh, const DrawList& list,
+  /// Pixels in which each item of the list is the nearest, by name; ghosts cover nothing, nor does
+  /// the bolus: what it passes before is still in the view. Without smoothing of edges.
+  Result<std::map<std::string, int>> visiblePixels(const GpuMesh& mesh, DrawList list,
                                                    const Camera& camera,
                                                    const RenderPreset& preset);
 
