@@ -232,7 +232,8 @@ void Lumen::evaluateInlet(const LumenPose& pose, LumenSheets& out) const {
     const double half = def_.inletHalfWidth(d);
     const double width = std::max(def_.closedGap_m / 2 / half, 1 - glottis);
     const Vec2 q = squareToDisc(2 * a - 1, b);
-    // the trachea stretches: its lower end stays at its height and comes half as far forward, assumed
+    // the trachea stretches: its lower end stays at its height and comes half as far forward,
+    // assumed
     const double height = 1 - smoothstep((d - 0.62) / 0.38);
     const double forward = 1 - 0.5 * smoothstep((d - 0.7) / 0.3);
     const Vec3 shift = pose.larynxShift_m.cwiseProduct(Vec3(forward, forward, height));

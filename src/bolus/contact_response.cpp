@@ -14,7 +14,7 @@ constexpr int kRescues = 4;             // times a particle outside is looked at
 // Farther in one go no wall pushes, in spacings, assumed (0.1 to 0.5): where sheets cross and part,
 // a cusp opens at once, and what it held comes out bit by bit.
 constexpr double kLongestPush = 0.2;
-constexpr double kJustInside = 1e-3;    // spacings, assumed: small against the smallest gap
+constexpr double kJustInside = 1e-3;  // spacings, assumed: small against the smallest gap
 
 double keptDistance(const std::vector<Contact>& contacts, double spacing_m) {
   return std::min(kRestDistance * spacing_m, kGapShare * localGap_m(contacts));

@@ -17,7 +17,7 @@ constexpr double kFilmLambda = 0.8;
 constexpr double kFilmReach = 0.45;   // spacings: just above a particle's rest distance
 constexpr double kTakeUpReach = 1.2;  // spacings, assumed (1 to 1.5)
 constexpr int kTakeUpCount = 3;       // fluid particles that near take a film up, assumed (2 to 5)
-constexpr double kTakeUpDensity = 1.03;  // of rho0 where a film is taken up, assumed (1 to 1.05)
+constexpr double kTakeUpDensity = 1.03;   // of rho0 where a film is taken up, assumed (1 to 1.05)
 constexpr double kCrowdedDensity = 1.08;  // and at most what it makes of others', assumed
 constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
 }  // namespace
@@ -149,7 +149,7 @@ bool Solver::Impl::staysFilm(std::size_t i) const {
 Vec3 Solver::Impl::filmVelocity_ms(int i) const {
   const std::vector<Contact>& c = contacts[i];
   if (c.empty()) return particles.velocities[i];  // let go by a wall, on its way into the fluid
-  if (localGap_m(c) < kFilmGap * def.spacing_m)  // held by two sheets
+  if (localGap_m(c) < kFilmGap * def.spacing_m)   // held by two sheets
     return (c[0].velocity + c[facingContact(c)].velocity) / 2;
   const Vec3 along = def.gravity_ms2 - def.gravity_ms2.dot(c[0].inward) * c[0].inward;
   return c[0].velocity + (frozen ? 0.0 : filmDrainage_s) * along;

@@ -35,8 +35,8 @@ constexpr double kCorrection_s = 1e-4;
 constexpr double kRelative = 2e-3, kFloor = 1e-4;  // assumed (1e-3 to 5e-3; 1e-5 to 1e-3)
 // Density that lacks less than kOpening lies between particles that are in disorder, not in an
 // opening, and closes within this time. Velocities that filled it at once would let a fluid at rest
-// fall into it every step, and a squeezed one lose a tenth of its flux. Assumed (0.02 to 0.1; 0.2 to
-// 1 s; 0.05 s leaves squeezed plates 8 % short of pressure).
+// fall into it every step, and a squeezed one lose a tenth of its flux. Assumed (0.02 to 0.1; 0.2
+// to 1 s; 0.05 s leaves squeezed plates 8 % short of pressure).
 constexpr double kOpening = 0.05, kSettle_s = 0.3;
 constexpr int kDensityCap = 150;     // iterations, assumed (100 to 300)
 constexpr int kRateCap = 500;        // assumed (200 to 1000): a long gap of 150 spacings needs 200

@@ -4,10 +4,10 @@
 //   a_i = (-V sum (k_i + k_j) gradW_ij - 2 k_i grad lambda_i) / (1 + drag_i)
 //   D_i(v) = V sum (v_i - v_j).gradW_ij + 2 (v_i.grad lambda_i - flux_i)
 // one for velocities, one for places: what density is above rest moves particles apart and leaves
-// their velocities alone, or every rearrangement would stir the flow. Both are solved with k >= 0 by
-// projected gradient steps, scaled by the diagonal and with momentum (Nesterov 1983; restarted as
-// O'Donoghue & Candes 2015). Walls enter nowhere else. Inner loops in single precision; what changes
-// a velocity is summed in double from antisymmetric terms, so that momentum is kept.
+// their velocities alone, or every rearrangement would stir the flow. Both are solved with k >= 0
+// by projected gradient steps, scaled by the diagonal and with momentum (Nesterov 1983; restarted
+// as O'Donoghue & Candes 2015). Walls enter nowhere else. Inner loops in single precision; what
+// changes a velocity is summed in double from antisymmetric terms, so that momentum is kept.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -65,9 +65,9 @@ class Projection {
   /// Makes the density at the end of the step at most rho0; `velocities` are those that move.
   ProjectionReport constantDensity(const Flow& flow, const std::vector<double>& densityRatio,
                                    double dt_s, std::vector<Vec3>& velocities);
-  /// Adds dt times the acceleration by the pressure of the last divergenceFree to velocities. Put in
-  /// before friction and taken out (negative dt) after it, it lets friction act on forces that are
-  /// in balance; divergenceFree then finds the whole pressure anew.
+  /// Adds dt times the acceleration by the pressure of the last divergenceFree to velocities. Put
+  /// in before friction and taken out (negative dt) after it, it lets friction act on forces that
+  /// are in balance; divergenceFree then finds the whole pressure anew.
   void pushByLastPressure(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
   void resize(int particles);
 

@@ -68,7 +68,7 @@ struct Stats {
   std::int64_t steps = 0, densityIterations = 0, rateIterations = 0, viscosityIterations = 0;
   std::int64_t clamped = 0;  ///< particle-steps slowed to half a spacing per step
   std::int64_t rescued = 0;  ///< particle-steps brought back from behind a wall
-  double leftInSlits = 0;  ///< particles that closing slits would have shot out in the last 20 ms
+  double leftInSlits = 0;    ///< particles that closing slits would have shot out in the last 20 ms
   std::int32_t escaped = 0;  ///< most ever found outside at an end of frame; must be 0
 };
 

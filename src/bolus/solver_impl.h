@@ -15,7 +15,8 @@
 
 namespace swallowclip::bolus {
 
-inline constexpr double kInfeasibleFor_s = 0.02;  // a pocket without room, before it is said; DESIGN 5
+inline constexpr double kInfeasibleFor_s =
+    0.02;  // a pocket without room, before it is said; DESIGN 5
 
 struct Solver::Impl {
   Impl(const BolusDef& d, const WallMotion& m, int threads);
@@ -90,7 +91,7 @@ struct Solver::Impl {
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
   std::vector<int> takenUp;                    // films that became fluid just now
   mutable std::vector<Neighbours::Near> nearFilm;
-  std::vector<std::uint8_t> active;            // takes part in the pressure solve
+  std::vector<std::uint8_t> active;  // takes part in the pressure solve
   Neighbours neighbours;
   std::vector<Vec3> moving;  // velocities, and what the density left above rest adds to them
   Projection projection;

@@ -13,12 +13,13 @@ constexpr double kLongestMove = 0.5;      // spacings per step, assumed; contact
 // Pressure and viscosity act one after the other, which leaves compression behind where a thick
 // fluid is squeezed: 5 Pa.s at 2 mm, 2.8 / 0.5 / 0.2 per mille on average at 0.6 / 0.25 / 0.125 ms.
 // So a step that leaves more than this shortens the next one, and quiet ones lengthen it again.
-constexpr double kMeanError = 1.5e-3, kPeakError = 0.045;  // assumed (a half and a third of what is allowed)
-constexpr double kShorten = 0.7, kLengthen = 1.04;        // assumed
-constexpr double kLeastShare = 1.0 / 16;                  // of the step otherwise chosen, assumed
+constexpr double kMeanError = 1.5e-3,
+                 kPeakError = 0.045;  // assumed (a half and a third of what is allowed)
+constexpr double kShorten = 0.7, kLengthen = 1.04;  // assumed
+constexpr double kLeastShare = 1.0 / 16;            // of the step otherwise chosen, assumed
 // A relaxed fluid's kernel sums are this much larger than those of a cubic lattice with as many
-// particles per volume: measured in columns at rest, which else stand 1.5 % too tall. A room that is
-// full feels only differences, and an equation of state has its own compression.
+// particles per volume: measured in columns at rest, which else stand 1.5 % too tall. A room that
+// is full feels only differences, and an equation of state has its own compression.
 constexpr double kRelaxedSum = 1.015;
 constexpr double kShortestRetry = 1.0 / 16;  // of a step that is taken again, assumed (1/64 to 1/4)
 // What a closing slit would shoot out faster than this stays there as film: in a slit narrower than
@@ -166,7 +167,8 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
     project(dt_s, report);
     const auto outrun = [&](const Vec3& v) { return outruns(dt_s, v); };
     if (dt_s <= std::max(least_s, kShortestStep_s) ||
-        (std::ranges::none_of(particles.velocities, outrun) && std::ranges::none_of(moving, outrun)))
+        (std::ranges::none_of(particles.velocities, outrun) &&
+         std::ranges::none_of(moving, outrun)))
       return dt_s;
     particles.velocities = before;
     projection.rateWarm() = rate;

@@ -152,8 +152,8 @@ SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
       const Tensor8 both2{own.xx + gather(b[0].data(), at), own.yy + gather(b[1].data(), at),
                           own.zz + gather(b[2].data(), at), own.xy + gather(b[3].data(), at),
                           own.xz + gather(b[4].data(), at), own.yz + gather(b[5].data(), at)};
-      const F8 even = largest(all(2 * s.leastEven),
-                              twice(both2, x, y, z) / largest(square, all(1e-30f)));
+      const F8 even =
+          largest(all(2 * s.leastEven), twice(both2, x, y, z) / largest(square, all(1e-30f)));
       // harmonic: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
       const F8 both = largest(all(s.leastPair), all(2) * mu * other / (mu + other));
       const F8 c = all(s.scale) * both * even * root(square) * r / (r * r + all(s.eta2));

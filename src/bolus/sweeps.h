@@ -97,7 +97,7 @@ struct Tensors {
 struct PairViscositySweep {
   PairLists pairs;
   const float *r, *viscosity;
-  const Tensors* evenness;
+  const Tensors *evenness;
   float scale, leastPair, eta2, leastEven;
   float *c, *diagonal;
   void run(int begin, int end) const;
@@ -106,8 +106,8 @@ struct PairViscositySweep {
 /// Adds sum r |g| n n (n along the pair) to a tensor of each slot.
 struct MomentSweep {
   PairLists pairs;
-  const float* r;
-  Tensors* moment;
+  const float *r;
+  Tensors *moment;
   void run(int begin, int end) const;
 };
 

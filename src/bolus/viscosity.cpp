@@ -18,8 +18,8 @@ constexpr double kLeastEvenness = 0.8;
 constexpr double kLeastMoment = 0.3;
 constexpr double kIsotropic = 2.5;       // see evenOut
 constexpr double kLeastPairShare = 0.2;  // of a pair's own weight, keeps it positive, assumed
-constexpr int kCap = 300;            // iterations, assumed (100 to 500)
-constexpr double kTolerance = 1e-4;  // residual over right side, assumed (1e-5 to 1e-3)
+constexpr int kCap = 300;                // iterations, assumed (100 to 500)
+constexpr double kTolerance = 1e-4;      // residual over right side, assumed (1e-5 to 1e-3)
 // Eq. 4.26 (Morris et al. 1997) is dt = 0.125 h^2 / nu; half of it, to be clear of the edge.
 constexpr double kExplicitShare = 0.0625;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
@@ -230,8 +230,8 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
     for (int i = begin; i < end; ++i)
       v[f.particle(i)] = (right_[i] - Vec3(&force_[3 * i])) / (1 + wallDrag_[f.particle(i)]);
   });
-  // The next step's viscosities follow from this field, before pressure has its say: what it does to
-  // single particles is noise, which would thin a fluid that ought to be stiff.
+  // The next step's viscosities follow from this field, before pressure has its say: what it does
+  // to single particles is noise, which would thin a fluid that ought to be stiff.
   shearRate_s_.assign(v.size(), NAN);
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; !constant && i < end; ++i)

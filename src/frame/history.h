@@ -101,7 +101,7 @@ struct Meta {
   double meanDensityError = 0, maxDensityError = 0;  ///< over all particles and steps, film apart
   double shareAboveTenPercent = 0;                   ///< particle-steps with density error > 10 %
   double maxSpeed_ms = 0;
-  std::int64_t steps = 0;         ///< of the bolus solver
+  std::int64_t steps = 0;           ///< of the bolus solver
   std::int64_t velocityClamps = 0;  ///< particle-steps slowed down because they outran their step
 };
 

@@ -40,7 +40,7 @@ struct Panel {
   std::vector<Level> levels = {};
   std::vector<Band> bands = {};      ///< Gantt rows instead of lines
   std::vector<Amount> amounts = {};  ///< bars instead of both; not over the common axis
-  bool markers = false;         ///< also mark the points of the lines
+  bool markers = false;              ///< also mark the points of the lines
 };
 
 struct Figure {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/colour_vision.h"
+
 namespace swallowclip::render {
 
 Image makeBackground(const RenderPreset& preset) {
@@ -26,9 +28,8 @@ Image makeBackground(const RenderPreset& preset) {
 std::array<std::uint8_t, 256> makeEncoding() {
   std::array<std::uint8_t, 256> table{};
   for (int i = 0; i < 256; ++i) {
-    const double c = i * i / (255.0 * 255.0);
-    const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-    table[i] = static_cast<std::uint8_t>(std::lround(255 * srgb));
+    const float root = static_cast<float>(i) / 255;
+    table[i] = static_cast<std::uint8_t>(std::lround(255 * toSrgb(root * root)));
   }
   return table;
 }

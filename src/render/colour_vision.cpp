@@ -59,12 +59,14 @@ Vec3f linear(const Colour& srgb) {
       [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });
 }
 
+float toSrgb(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
 Colour seenBy(Vision vision, const Colour& srgb) {
   if (vision == Vision::normal) return srgb;
   const Vec3f seen = (machado(vision) * linear(srgb)).cwiseMax(0.0f).cwiseMin(1.0f);
-  return seen.unaryExpr([](float c) {
-    return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
-  });
+  return seen.unaryExpr([](float c) { return toSrgb(c); });
 }
 
 double colourDifference(const Colour& a_srgb, const Colour& b_srgb) {

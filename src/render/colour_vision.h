@@ -23,4 +23,6 @@ double ciede2000(const Vec3& lab1, const Vec3& lab2);
 
 /// Linear light of an sRGB component triple (IEC 61966-2-1).
 Vec3f linear(const Colour& srgb);
+/// The inverse, of one component.
+float toSrgb(float linear);
 }  // namespace swallowclip::render

@@ -16,8 +16,7 @@ Result<void> GhostLayers::create(const std::filesystem::path& dir, int width, in
 Result<void> GhostLayers::begin(std::size_t k, const Target& solids) {
   while (layers_.size() <= k) {
     layers_.emplace_back();
-    if (auto ok =
-            layers_.back().create("ghosts", width_, height_, GL_RGBA8, GL_DEPTH24_STENCIL8);
+    if (auto ok = layers_.back().create("ghosts", width_, height_, GL_RGBA8, GL_DEPTH24_STENCIL8);
         !ok)
       return ok;
   }

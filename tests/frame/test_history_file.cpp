@@ -47,11 +47,12 @@ void expectSame(const History& a, const History& b) {
   EXPECT_EQ(m.component, n.component);
   EXPECT_EQ(m.score, n.score);
   EXPECT_EQ(m.cues_s, n.cues_s);
-  EXPECT_EQ(
-      std::vector({m.fps, m.cue_s, m.density_kgm3, m.viscosity_Pas, m.bariumSulfate_kgm3, m.particleSpacing_m,
-                   m.meanDensityError, m.maxDensityError, m.shareAboveTenPercent, m.maxSpeed_ms}),
-      std::vector({n.fps, n.cue_s, n.density_kgm3, n.viscosity_Pas, n.bariumSulfate_kgm3, n.particleSpacing_m,
-                   n.meanDensityError, n.maxDensityError, n.shareAboveTenPercent, n.maxSpeed_ms}));
+  EXPECT_EQ(std::vector({m.fps, m.cue_s, m.density_kgm3, m.viscosity_Pas, m.bariumSulfate_kgm3,
+                         m.particleSpacing_m, m.meanDensityError, m.maxDensityError,
+                         m.shareAboveTenPercent, m.maxSpeed_ms}),
+            std::vector({n.fps, n.cue_s, n.density_kgm3, n.viscosity_Pas, n.bariumSulfate_kgm3,
+                         n.particleSpacing_m, n.meanDensityError, n.maxDensityError,
+                         n.shareAboveTenPercent, n.maxSpeed_ms}));
 }
 
 TEST(HistoryFile, ReadsBackBitForBit) {

@@ -164,7 +164,8 @@ TEST(Renderer, GhostsBlendByDepthWhateverTheirOrder) {
       seen * root(red) + (1 - seen) * (seen * root(green) + (1 - seen) * root(blue));
   for (int k = 0; k < 3; ++k) {
     const double got = image.row(50)[4 * 50 + k] / 255.0;
-    const double gotRoot = std::sqrt(got <= 0.04045 ? got / 12.92 : std::pow((got + 0.055) / 1.055, 2.4));
+    const double gotRoot =
+        std::sqrt(got <= 0.04045 ? got / 12.92 : std::pow((got + 0.055) / 1.055, 2.4));
     EXPECT_NEAR(gotRoot, mixed[k], 0.012) << "channel " << k;
   }
 }

@@ -128,4 +128,3 @@ TEST(Analytic, GravityCurrentHoldsItsVolume) {
   }
   EXPECT_NEAR(sum, volume, 5e-3 * volume);
 }
-
