@@ -9,7 +9,8 @@
 
 namespace swallowclip::anatomy {
 namespace {
-constexpr double kFoldCover_m = 3e-4;                  // assumed, 0.2-0.5 mm
+constexpr double kFloorRise_m = 12e-3, kFloorFall_m = 22e-3;  // floor of the mouth, assumed
+constexpr double kFoldCover_m = 3e-4;                         // assumed, 0.2-0.5 mm
 constexpr double kFoldsFrom = 0.52, kFoldsTo = 0.595;  // of the vocal folds in the inlet's depth
 constexpr int kUnderside = 11;  // vertices from the tongue's lateral edge round to the other one
 
@@ -136,7 +137,7 @@ std::vector<Vec3> SoftParts::keepVolume(const LumenSheets& sheets, const SoftPos
     p = tongue(sheets, pose, b1);
     const double v1 = volume(p, t) - tongueVolume_m3_;
     if (v1 == v0) break;
-    const double next = std::clamp(b1 - v1 * (b1 - b0) / (v1 - v0), -12e-3, 14e-3);
+    const double next = std::clamp(b1 - v1 * (b1 - b0) / (v1 - v0), -kFloorRise_m, kFloorFall_m);
     b0 = b1;
     v0 = v1;
     b1 = next;

@@ -11,8 +11,6 @@
 namespace swallowclip::bolus {
 namespace {
 constexpr std::array<const char*, 2> kSolverNames{"dfsph", "wcsph"};
-// 621 particles of (2 mm)^3 are called 5 mL (thesis 4.3, table 4.2): this share of the nominal.
-constexpr double kFilledShare = 621 * 8e-9 / 5e-6;
 constexpr int kMostParticles = 2'000'000;  // what this program is made for, times a hundred
 // Settling: honey-like, so that thin fluids do not slosh and yield fluids do come to rest.
 constexpr double kSettlingViscosity_Pas = 0.5;  // assumed (0.1 to 1)
@@ -149,6 +147,11 @@ Result<RelaxReport> Solver::relax(double t_s, double longest_s) {
   s.meetWalls(t_s);
   s.finishFrame();
   if (!ok) return std::unexpected(ok.error());
+  if (s.escapedNow > 0)
+    return failure(fmt::format("t = {:.4f} s", t_s),
+                   fmt::format("{} of {} particles find no place between the walls", s.escapedNow,
+                               s.particles.positions.size()),
+                   "hold a smaller bolus, or open the held mouth to 1.15 times its volume");
   return report;
 }
 

@@ -17,6 +17,9 @@
 
 namespace swallowclip::bolus {
 
+/// 621 particles of (2 mm)^3 are called 5 mL (thesis 4.3, table 4.2): this share of the nominal.
+inline constexpr double kFilledShare = 621 * 8e-9 / 5e-6;
+
 enum class SolverKind { dfsph, wcsph };
 const char* name(SolverKind kind);
 Result<SolverKind> solverFromName(std::string_view word);

@@ -46,6 +46,21 @@ double Curve::operator()(double x) const {
          y_[i + 1] * (3 * t2 - 2 * t3) + h * m_[i + 1] * (t3 - t2);
 }
 
+Curve Curve::shifted(double by) const {
+  Curve later = *this;
+  for (double& x : later.x_) x += by;
+  return later;
+}
+
+double Curve::reaches(double y) const {
+  double low = x_.front(), high = x_.back();
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    ((*this)(middle) < y ? low : high) = middle;
+  }
+  return high;
+}
+
 double Curve::slope(double x) const {
   if (x < x_.front() || x > x_.back() || x_.size() == 1) return 0;
   const std::size_t i = interval(x);

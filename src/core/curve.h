@@ -13,6 +13,10 @@ class Curve {
   Curve(std::vector<double> x, std::vector<double> y);
   double operator()(double x) const;
   double slope(double x) const;
+  /// The same curve, by this much later in x.
+  Curve shifted(double by) const;
+  /// The x at which a rising curve comes to y; its ends' for what is beyond.
+  double reaches(double y) const;
   bool empty() const { return x_.empty(); }
   double front() const { return x_.front(); }
   double back() const { return x_.back(); }

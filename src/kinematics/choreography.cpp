@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/tri_mesh.h"
+
 namespace swallowclip::kinematics {
 namespace {
 // Length of the contact front's shoulder: tongue against palate, then tongue base and constrictors
@@ -22,7 +24,21 @@ constexpr double kSideSlit_m =
     5e-3;  // gap beside a lateral wall that does not come in; assumed 3-7
 constexpr double kPouchAt_m = 0.118;  // near the thyrohyoid membrane; clinical-reference 3
 constexpr double kPouchHalfHeight_m = 4e-3, kPouchGap_m = 4e-3;  // 8 mm tall; gap assumed 2-5
-const Vec3 kCricoarytenoidJoint_m(0, 28e-3, -96e-3);             // assumed, of the default scene
+constexpr double kWidestGroove_m = 16e-3, kGrooveEnd_m = 60e-3;  // what the mouth has; assumed
+// The sphincter opens wider for more (Cook 1989); exponent of the volume assumed, 0.15-0.3.
+constexpr double kUesGrowth = 0.2;
+// The tongue lifts as a large bolus leaves it, else groove and chute together would displace more
+// tongue than can go elsewhere; share of the depth for an endless volume, assumed 0.5-0.8.
+constexpr double kGrooveGive = 0.65;
+// A larger bolus is longer: what follows its tail comes later, what lets it through stays longer
+// (closure and opening last longer, Cook 1989). Per doubling and time that the contact front takes
+// over the held bolus, so that a slow tongue leaves its bolus room too; assumed, 0.22-0.45.
+constexpr double kLaterTail = 1. / 3, kHeldEnd_m = 50e-3;
+bool followsTheTail(const std::string& track) {
+  return track == "ppw_bulge" || track == "tongue_base" || track.starts_with("wall_") ||
+         track.starts_with("pouch_") || track.ends_with("_return");
+}
+const Vec3 kCricoarytenoidJoint_m(0, 28e-3, -96e-3);  // assumed, of the default scene
 
 // Map of [0, end] onto itself: the given knots inside, the identity before the first one. Knots
 // close together below it keep the curve's bend from reaching back to the palate.
@@ -83,6 +99,28 @@ const std::vector<TrackKind>& trackKinds() {
   return kinds;
 }
 
+void SwallowDef::offer(double offered_m3) {
+  const double more = offered_m3 / volume_m3, size = std::cbrt(more);
+  grooveHalfWidth_m = std::min(size * grooveHalfWidth_m, kWidestGroove_m);
+  const double farthest_m = std::max(grooveEnd_m, kGrooveEnd_m - 2 * rockAmplitude_m);
+  grooveEnd_m = std::min(grooveStart_m + size * (grooveEnd_m - grooveStart_m), farthest_m);
+  grooveGive = kGrooveGive * std::max(0.0, 1 - 1 / more);
+  tracks["ues"].peakValue *= std::pow(more, kUesGrowth);
+  const double sweep_s = front_m.reaches(kHeldEnd_m) - front_m.reaches(0);
+  const double later_s = std::max(0.0, kLaterTail * sweep_s * std::log2(more));
+  duration_s += later_s;
+  for (auto& [key, track] : tracks) {
+    if (followsTheTail(key)) {
+      track.delay_s += later_s;
+    } else if (track.hold_s < 10) {
+      track.hold_s += later_s;
+      track.offset_s += later_s;
+    }
+  }
+  front_m = front_m.shifted(later_s);
+  volume_m3 = offered_m3;
+}
+
 const Track& SwallowDef::track(const std::string& key) const {
   static const Track none{0, 0, 0, 0, 0, 0, 0, 1};
   const auto it = tracks.find(key);
@@ -91,17 +129,16 @@ const Track& SwallowDef::track(const std::string& key) const {
 
 Choreography::Choreography(const anatomy::Lumen& lumen, SwallowDef def)
     : lumen_(lumen), def_(std::move(def)) {
-  // Room of the held bolus: depth follows from its footprint, by quadrature of the profile.
-  double footprint_m2 = 0;
-  const double ds = 0.5e-3, dx = 0.25e-3;
-  for (double at = 0; at < 0.08; at += ds)
-    for (double x = -def_.grooveHalfWidth_m; x < def_.grooveHalfWidth_m; x += dx) {
-      const double q = std::abs(x) / def_.grooveHalfWidth_m;
-      footprint_m2 += ds * dx * (1 - q * q * q) *
-                      plateau(at, def_.grooveStart_m, def_.grooveStart_m + 8e-3,
-                              def_.grooveEnd_m - 8e-3, def_.grooveEnd_m);
-    }
-  grooveDepth_m_ = def_.roomFactor * def_.volume_m3 / footprint_m2;
+  // The groove's depth follows from the room that the skin must have beyond that without a groove:
+  // a curved path makes it less than footprint times depth. Nearly linear: few secant steps.
+  const auto room_m3 = [&](double depth_m) {
+    grooveDepth_m_ = depth_m;
+    return volume(lumen.skinPositions(lumen.evaluate(lumenPose(0))), lumen.skin().triangles);
+  };
+  const double none_m3 = room_m3(0), wanted_m3 = def_.roomFactor * def_.volume_m3;
+  double depth_m = 10e-3;
+  for (int i = 0; i < 4; ++i) depth_m *= wanted_m3 / (room_m3(depth_m) - none_m3);
+  grooveDepth_m_ = depth_m;
 }
 
 double Choreography::track(const char* name, double tau) const {
@@ -124,7 +161,8 @@ double Choreography::chamber(double s, double u, double tau) const {
   const double cycles = std::clamp(rockTime * def_.rockRate_hz, 0.0, def_.rockCycles);
   const double shift = -def_.rockAmplitude_m * std::cos(2 * kPi * cycles) +
                        (def_.rockCycles > 0 ? def_.rockAmplitude_m : 0.0);
-  const double groove = grooveDepth_m_ * (1 - q * q * q) *
+  const double lifted = 1 - def_.grooveGive * track("seal", tau);
+  const double groove = lifted * grooveDepth_m_ * (1 - q * q * q) *
                         plateau(s - shift, def_.grooveStart_m, def_.grooveStart_m + 8e-3,
                                 def_.grooveEnd_m - 8e-3, def_.grooveEnd_m);
   const double au = std::abs(u);

@@ -20,6 +20,8 @@ class Choreography {
   Choreography(const anatomy::Lumen& lumen, SwallowDef def);
 
   const SwallowDef& def() const { return def_; }
+  /// Of the tongue below the palate, where it holds the bolus.
+  double grooveDepth_m() const { return grooveDepth_m_; }
   anatomy::LumenPose lumenPose(double t_s) const;
   CarrierPoses carriers(double t_s) const;
   /// Branch 1: velum against the wall; 2: laryngeal inlet shut lip to lip.

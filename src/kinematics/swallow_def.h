@@ -40,12 +40,17 @@ struct SwallowDef {
   double frontAmplitude = 1;      ///< 0: no wave at all
   double volume_m3 = 5e-6;        ///< V0, the room of the held bolus follows it
   Vec3 gravity_ms2{0, 0, -9.81};  ///< in the head's frame: upright
+  double grooveGive = 0;          ///< share of its depth that goes as the seal gives way
   double roomFactor = 1.2;        ///< held room / V0, DESIGN section 3: 1.15-1.3
   double grooveStart_m = 4e-3, grooveEnd_m = 54e-3, grooveHalfWidth_m = 10.5e-3;
   std::vector<Hollow> hollows;
   double rockAmplitude_m = 0, rockRate_hz = 1.2, rockCycles = 0, rockStart_s = 0;
 
   const Track& track(const std::string& key) const;
+  /// What the swallow does for another volume: the held bolus keeps its shape in so far as the
+  /// mouth is wide and long enough (its depth makes up for the rest), the UES opens wider, and more
+  /// than the file's volume gets more time.
+  void offer(double volume_m3);
 };
 
 /// The tracks that a swallow may define, and whether their peak is a length (else a ratio 0..1).

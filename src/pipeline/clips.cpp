@@ -6,10 +6,12 @@
 #include <cmath>
 #include <span>
 
+#include "bolus/solver.h"
 #include "core/file.h"
 #include "pipeline/components.h"
 #include "pipeline/interrupt.h"
 #include "render/renderer.h"
+#include "scoring/clearance.h"
 #include "video/frame_sink.h"
 #include "video/png.h"
 #include "video/vtt.h"
@@ -45,7 +47,12 @@ render::CaptionText captionFor(const frame::History& h, const std::vector<EventM
                           k->scores[h.meta.score]);
   else
     c.title = h.meta.swallow;
-  c.subtitle = h.meta.bolus == "none" ? "no bolus" : "bolus: " + h.meta.bolus;
+  c.subtitle = "no bolus";
+  if (scoring::hasBolus(h)) {
+    const double offered_m3 = static_cast<double>(h.bolus.s_m.front().size()) *
+                              h.bolus.particleVolume_m3 / bolus::kFilledShare;
+    c.subtitle = fmt::format("bolus: {}, {:.2g} mL", h.meta.bolus, offered_m3 * 1e6);
+  }
   for (const EventMark& m : marks) {
     std::string words = m.name;
     std::replace(words.begin(), words.end(), '_', ' ');

@@ -17,7 +17,10 @@
 
 namespace swallowclip::pipeline {
 namespace {
-constexpr double kSequenceRate_hz = 34;         // 109 meshes over 3.18 s, thesis 3.2
+constexpr double kCubicMetrePerMl = 1e-6;
+constexpr double kTongueKept = 0.98;        // DESIGN section 3
+constexpr double kDeepestGroove_m = 32e-3;  // of a tongue 40 mm high, clinical-reference 5; assumed
+constexpr double kSequenceRate_hz = 34;     // 109 meshes over 3.18 s, thesis 3.2
 constexpr double kNasopharynxFloor_m = -0.022;  // contact level of the raised velum, this scene
 
 std::vector<Vec3f> toFloat(const std::vector<Vec3>& p) {
@@ -115,10 +118,23 @@ struct Moving {
   std::vector<std::string> landmarkNames;
 };
 
+void noteLostVolume(const kinematics::StructureSequence& tongue, double whole_m3,
+                    Progress& progress) {
+  double least = 1;
+  for (const std::vector<Vec3>& frame : tongue.frames)
+    least = std::min(least, volume(frame, tongue.triangles) / whole_m3);
+  if (least < kTongueKept)
+    progress.note(
+        fmt::format("at its most displaced the tongue has {:.0f} % of its volume: this bolus "
+                    "takes more room than the floor of the mouth can give",
+                    least * 100));
+}
+
 Result<Moving> setInMotion(const LoadedScene& scene, const kinematics::SwallowDef& swallow,
-                           int threads) {
+                           int threads, Progress& progress) {
   kinematics::BakedMotion baked =
       kinematics::bake(scene.rigid, *scene.lumen, *scene.soft, swallow, kSequenceRate_hz);
+  noteLostVolume(baked.sequence.structures.front(), scene.soft->tongueVolume_m3(), progress);
   auto model = biomech::Model::build(baked.sequence);
   if (!model) return std::unexpected(model.error());
   const anatomy::SkinLayout& layout = scene.lumen->skin();
@@ -186,8 +202,7 @@ Result<kinematics::SwallowDef> loadSwallow(const RunOptions& o, int score,
   if (file) *file = path;
   auto swallow = scene::loadSwallow(path);
   if (!swallow) return swallow;
-  constexpr double kCubicMetrePerMl = 1e-6;
-  swallow->volume_m3 = o.volume_mL * kCubicMetrePerMl;
+  swallow->offer(o.volume_mL * kCubicMetrePerMl);
   for (const TrackSetting& s : o.sets)
     if (auto set = scene::applySet(*swallow, fmt::format("{}.{}={}", s.track, s.key, s.value));
         !set)
@@ -217,6 +232,8 @@ Result<frame::History> simulateSwallow(const RunOptions& o, const kinematics::Sw
   frame::Meta& m = h.meta;
   m.scene = o.scene;
   m.swallow = swallow.name;
+  if (o.hasBolus() && o.volume_mL != RunOptions{}.volume_mL)
+    m.swallow += fmt::format("+volume={:g}mL", o.volume_mL);
   for (const TrackSetting& set : o.sets)
     m.swallow += fmt::format("+{}.{}={:g}", set.track, set.key, set.value);
   m.bolus = "none";
@@ -243,10 +260,16 @@ Result<frame::History> simulateSwallow(const RunOptions& o, const kinematics::Sw
   if (!hash) return std::unexpected(hash.error());
   m.inputsSha256 = *hash;
 
-  auto moving = setInMotion(*scene, swallow, o.jobs);
+  const kinematics::Choreography choreography(*scene->lumen, swallow);
+  if (choreography.grooveDepth_m() > kDeepestGroove_m)
+    return usageError(
+        "bolus",
+        fmt::format("to hold {:g} mL this tongue would lie {:.0f} mm below the palate",
+                    swallow.volume_m3 / kCubicMetrePerMl, choreography.grooveDepth_m() * 1e3),
+        fmt::format("offer less, so that {:g} mm suffice", kDeepestGroove_m * 1e3));
+  auto moving = setInMotion(*scene, swallow, o.jobs, progress);
   if (!moving) return std::unexpected(moving.error());
   bolus::WallMotion walls = moving->skin.wallMotion();
-  const kinematics::Choreography choreography(*scene->lumen, swallow);
   walls.sealed = [&choreography](double t, int branch) { return choreography.sealed(t, branch); };
   std::optional<bolus::Solver> solver;
   if (o.hasBolus()) {

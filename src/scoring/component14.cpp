@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "scoring/clearance.h"
 #include "scoring/events.h"
@@ -24,14 +25,20 @@ ComponentReport measureComponent14(const History& h, const std::vector<double>& 
                                    const std::vector<MeasuredEvent>& events,
                                    const ScoringRules& rules) {
   ComponentReport out;
+  // A larger bolus opens it wider; without one, as for the volume that the rules name.
+  const double offered_m3 =
+      hasBolus(h) ? h.bolus.s_m.front().size() * h.bolus.particleVolume_m3 : 0;
+  const double normal_m =
+      rules.normalUes_m *
+      (offered_m3 > 0 ? std::pow(offered_m3 / rules.uesVolume_m3, rules.uesGrowth) : 1.0);
   const std::string lack = "the skin has no midline at the UES";
-  Quantity width{"ues_diameter_ratio",
-                 {},
-                 "ratio",
-                 -1,
-                 fmt::format("d: largest AP width at the narrowest UES level over {:g} mm",
-                             rules.normalUes_m * 1e3),
-                 lack};
+  Quantity width{
+      "ues_diameter_ratio",
+      {},
+      "ratio",
+      -1,
+      fmt::format("d: largest AP width at the narrowest UES level over {:.3g} mm", normal_m * 1e3),
+      lack};
   Quantity open{
       "ues_open_ratio",
       {},
@@ -57,7 +64,7 @@ ComponentReport measureComponent14(const History& h, const std::vector<double>& 
         static_cast<int>(std::max_element(ues_m.begin() + rest, ues_m.end()) - ues_m.begin());
     const int end = uesc ? uesc->frame : h.frames() - 1;
     Component14Measures m;
-    m.diameter = ues_m[widest] / rules.normalUes_m;
+    m.diameter = ues_m[widest] / normal_m;
     if (ueso) m.openTime = (h.time_s[end] - *ueso->time_s) / rules.normalUesOpen_s;
     set(width, m.diameter, widest), set(open, m.openTime, end);
     if (hasBolus(h)) {

@@ -6,7 +6,7 @@
 namespace swallowclip::scoring {
 namespace {
 using R = ScoringRules;
-constexpr double kMm = 1e-3, kOne = 1, kDeg = kPi / 180;
+constexpr double kMm = 1e-3, kMl = 1e-6, kOne = 1, kDeg = kPi / 180;
 constexpr const char *kRise = "larynx_rise_ratio", *kGap = "vestibule_ratio_at_score",
                      *kBase = "tongue_base_gap_ratio",
                      *kWave = "wall_excursion_2,wall_excursion_3,wall_excursion_4",
@@ -42,6 +42,8 @@ constexpr RuleField kFields[] = {
     {"normal_swallow", "wall_excursion_c3_mm", &R::normalWallC3_m, kMm, 0.2, 20},
     {"normal_swallow", "wall_excursion_c4_mm", &R::normalWallC4_m, kMm, 0.2, 20},
     {"normal_swallow", "ues_diameter_mm", &R::normalUes_m, kMm, 1, 40},
+    {"normal_swallow", "ues_volume_mL", &R::uesVolume_m3, kMl, 0.5, 50},
+    {"normal_swallow", "ues_volume_exponent", &R::uesGrowth, kOne, 0, 1},
     {"normal_swallow", "ues_open_s", &R::normalUesOpen_s, kOne, 0.05, 5},
 
     {"gap_rule", "sealed_ratio", &R::sealedRatio, kOne, 0, 1, kBase},

@@ -19,7 +19,7 @@ struct ScoringRules {
   double normalHyoidAnterior_m = 0, normalTongueBase_m = 0, normalShortening_m = 0;
   double normalRiseHorizontal_m = 0, normalRiseInverted_m = 0, normalRiseOnset_m = 0;
   double normalWallC2_m = 0, normalWallC3_m = 0, normalWallC4_m = 0;
-  double normalUes_m = 0, normalUesOpen_s = 0;
+  double normalUes_m = 0, normalUesOpen_s = 0, uesVolume_m3 = 0, uesGrowth = 0;
   // Gap rule, shared.
   double sealedRatio = 0, sealed_m = 0, traceRatio = 0, narrowRatio = 0;
   // Residue rule, shared.

@@ -28,6 +28,15 @@ TEST(Curve, SlopeIsTheDerivativeAndContinuous) {
     EXPECT_NEAR(curve.slope(knot - 1e-9), curve.slope(knot + 1e-9), 1e-5) << knot;
 }
 
+TEST(Curve, ShiftedComesLaterAndReachesInvertsIt) {
+  const Curve curve({0, 1, 2, 4}, {-1, 0, 5, 6});
+  const Curve later = curve.shifted(0.25);
+  for (double x = -1; x < 5; x += 0.1) EXPECT_NEAR(later(x + 0.25), curve(x), 1e-12) << x;
+  for (const double y : {-0.9, 0.0, 2.0, 5.5}) EXPECT_NEAR(curve(curve.reaches(y)), y, 1e-9) << y;
+  EXPECT_NEAR(curve.reaches(-2), 0, 1e-12);
+  EXPECT_EQ(curve.reaches(7), 4);
+}
+
 TEST(Easing, EndsAndMiddle) {
   for (const auto ease : {smoothstep, minimumJerk}) {
     EXPECT_EQ(ease(-1), 0);

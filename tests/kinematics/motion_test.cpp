@@ -82,6 +82,10 @@ TEST_P(Motion, TongueKeepsItsVolumeAndWallsNeverCross) {
   RecordProperty("deepest_mm", fmt::format("{:.3f}", worst * 1e3));
 }
 
+double tet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a) / 6;
+}
+
 // Room of the first `stretches` open stretches of the main lumen behind the contact front: where
 // the bolus is. A row of the lattice is shut when no particle could be in it (gap below 0.5 mm
 // everywhere).
@@ -102,10 +106,12 @@ double pocket_m3(const anatomy::Lumen& lumen, const anatomy::LumenPose& pose, do
     for (int c = 0; c + 1 < lumen.columns(); ++c) {
       const auto f = [&](int dr, int dc) { return sheets.f[lumen.index(r + dr, c + dc)]; };
       const auto m = [&](int dr, int dc) { return sheets.m[lumen.index(r + dr, c + dc)]; };
-      const Vec3 gap =
-          0.25 * (m(0, 0) + m(0, 1) + m(1, 0) + m(1, 1) - f(0, 0) - f(0, 1) - f(1, 0) - f(1, 1));
-      const Vec3 area = 0.5 * (f(1, 1) - f(0, 0)).cross(f(1, 0) - f(0, 1));
-      sum += std::abs(gap.dot(area));
+      // Two wedges of three tetrahedra each: exact however much the sheets' normals fan out.
+      const auto wedge = [&](int r1, int c1, int r2, int c2) {
+        const Vec3 a = f(0, 0), b = f(r1, c1), d = f(r2, c2), top = m(r1, c1);
+        return tet(a, b, d, m(0, 0)) + tet(b, d, m(0, 0), top) + tet(d, m(0, 0), top, m(r2, c2));
+      };
+      sum += std::abs(wedge(1, 0, 1, 1) + wedge(1, 1, 0, 1));
     }
   }
   return sum;
@@ -127,6 +133,58 @@ TEST_P(Motion, TheHeldBolusAlwaysHasRoom) {
   const double held = pocket_m3(adult().lumen, motion.lumenPose(0), 0.068);
   EXPECT_GE(held, 1.15 * def.volume_m3);
   EXPECT_LE(held, 1.3 * def.volume_m3);
+}
+
+class Volume : public testing::TestWithParam<std::pair<const char*, int>> {};
+INSTANTIATE_TEST_SUITE_P(Offered, Volume,
+                         testing::Values(std::pair{"c04-s0", 1}, std::pair{"c04-s0", 2},
+                                         std::pair{"c04-s0", 10}, std::pair{"c04-s0", 20},
+                                         std::pair{"c04-s1", 15}, std::pair{"c04-s2", 10},
+                                         std::pair{"c04-s3", 10}, std::pair{"c15-s4", 20}),
+                         [](const auto& i) {
+                           std::string name = fmt::format("{}_{}mL", i.param.first, i.param.second);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST_P(Volume, HasRoomAndWallsThatNeverCross) {
+  auto def = swallow(GetParam().first);
+  def.offer(GetParam().second * 1e-6);
+  const anatomy::Lumen& lumen = adult().lumen;
+  const kinematics::Choreography motion(lumen, def);
+  for (double t = 0; t <= def.duration_s; t += 1.0 / 34) {
+    const double tau = t - def.bpm_s;
+    if (def.track("ues").at(tau) > 0.5 * def.track("ues").peakValue) break;  // the bolus leaves
+    ASSERT_GE(pocket_m3(lumen, motion.lumenPose(t), 0.184), 1.1 * def.volume_m3) << "t = " << t;
+  }
+  const double held = pocket_m3(lumen, motion.lumenPose(0), 0.068);
+  EXPECT_GE(held, 1.15 * def.volume_m3);
+  EXPECT_LE(held, 1.3 * def.volume_m3);
+  const auto baked = kinematics::bake({}, lumen, adult().soft, def, 34);
+  const auto& tongue = baked.sequence.structures.front();
+  ThreadPool pool(2);
+  for (int k = 0; k < baked.sequence.frames(); k += 2) {
+    EXPECT_LE(airway::maxInterpenetration(baked.skin[k], lumen.skin().triangles, pool).depth_m,
+              0.5e-3)
+        << "frame " << k;
+    EXPECT_NEAR(volume(tongue.frames[k], tongue.triangles) / adult().soft.tongueVolume_m3(), 1,
+                0.02);  // DESIGN section 3
+  }
+}
+
+TEST(Offer, OnlyAnotherVolumeChangesTheSwallow) {
+  const auto file = swallow("c04-s0");
+  auto same = file, twice = file;
+  same.offer(file.volume_m3), twice.offer(2 * file.volume_m3);
+  EXPECT_DOUBLE_EQ(same.grooveEnd_m, file.grooveEnd_m);
+  for (const auto& [key, track] : file.tracks) {
+    EXPECT_EQ(same.track(key).peakValue, track.peakValue) << key;
+    EXPECT_EQ(same.track(key).delay_s, track.delay_s) << key;
+    EXPECT_EQ(same.track(key).hold_s, track.hold_s) << key;
+  }
+  EXPECT_GT(twice.track("ues").peakValue, file.track("ues").peakValue);
+  EXPECT_GT(twice.track("tongue_base").delay_s, file.track("tongue_base").delay_s);
+  EXPECT_GT(twice.track("hyoid_superior").hold_s, file.track("hyoid_superior").hold_s);
 }
 
 // The mirror image of a swallow moves every wall as the swallow does, seen in a mirror.

@@ -201,6 +201,17 @@ TEST(Component14, WorstOfThree) {
   EXPECT_EQ(score(0.05, 0, 0.99), 3);
 }
 
+TEST(Component14, TheNormalWidthGrowsWithTheVolume) {
+  frame::History h = makeHistory(FakeSwallow{});
+  std::vector<double> ues_m(h.frames(), 8.6e-3);
+  const auto ratio = [&](double volume_m3) {
+    h.bolus.particleVolume_m3 = volume_m3 / h.bolus.s_m.front().size();
+    return *measureComponent14(h, ues_m, {}, testRules()).quantities[0].value;
+  };
+  EXPECT_NEAR(ratio(5e-6), 1, 1e-6);
+  EXPECT_NEAR(ratio(20e-6), std::pow(4, -testRules().uesGrowth), 1e-6);
+}
+
 TEST(BolusHead, HeadTailAndInitiation) {
   // A plug of 200 particles over 25 mm that moves at 35 mm/s from 20 mm on.
   FakeSwallow f{.duration_s = 3.8};
