@@ -27,6 +27,7 @@ constexpr double kPouchHalfHeight_m = 4e-3, kPouchGap_m = 4e-3;  // 8 mm tall; g
 constexpr double kWidestGroove_m = 16e-3, kGrooveEnd_m = 60e-3;  // what the mouth has; assumed
 // The sphincter opens wider for more (Cook 1989); exponent of the volume assumed, 0.15-0.3.
 constexpr double kUesGrowth = 0.2;
+constexpr double kThickestCoat_m = 2e-3;  // assumed, 1.5-3
 // The tongue lifts as a large bolus leaves it, else groove and chute together would displace more
 // tongue than can go elsewhere; share of the depth for an endless volume, assumed 0.5-0.8.
 constexpr double kGrooveGive = 0.65;
@@ -104,6 +105,13 @@ void SwallowDef::offer(double offered_m3) {
   grooveHalfWidth_m = std::min(size * grooveHalfWidth_m, kWidestGroove_m);
   const double farthest_m = std::max(grooveEnd_m, kGrooveEnd_m - 2 * rockAmplitude_m);
   grooveEnd_m = std::min(grooveStart_m + size * (grooveEnd_m - grooveStart_m), farthest_m);
+  tracks["chute"].peakValue *= std::min(size, 1.0);
+  for (Hollow& h : hollows) {  // keeps about the same share; a coat gets no thicker, none thinner
+    const double middle_m = 0.5 * (h.start_m + h.end_m), half_m = 0.5 * (h.end_m - h.start_m);
+    h.start_m = middle_m - size * half_m, h.end_m = middle_m + size * half_m;
+    h.halfWidth_m *= size;
+    if (h.depth_m > kThickestCoat_m) h.depth_m *= std::max(size, 1.0);
+  }
   grooveGive = kGrooveGive * std::max(0.0, 1 - 1 / more);
   tracks["ues"].peakValue *= std::pow(more, kUesGrowth);
   const double sweep_s = front_m.reaches(kHeldEnd_m) - front_m.reaches(0);
