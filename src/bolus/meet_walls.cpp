@@ -14,7 +14,9 @@ constexpr double kFilmGap = 0.3;    // spacings, DESIGN 5 (0.6 invents residue)
 // The same in a fold or cusp, where no contact faces the nearest: a slit of that width leaves a
 // fifth of the kernel. At most 1 where sheets do not cross.
 constexpr double kFilmLambda = 0.8;
-constexpr double kFilmReach = 0.45;   // spacings: just above a particle's rest distance
+// Less than sheets may cross: between crossed sheets it must not lie beyond the other one.
+// Spacings, assumed (0.1 to 0.45).
+constexpr double kFilmReach = 0.2;
 constexpr double kTakeUpReach = 1.2;  // spacings, assumed (1 to 1.5)
 constexpr int kTakeUpCount = 3;       // fluid particles that near take a film up, assumed (2 to 5)
 constexpr double kTakeUpDensity = 1.03;   // of rho0 where a film is taken up, assumed (1 to 1.05)

@@ -94,7 +94,8 @@ struct ViewDef {
   std::vector<std::string> hidden;       ///< structures not drawn
   std::map<std::string, float> ghosted;  ///< structure -> opacity 0..1
   /// Structure -> least visible pixels in a picture of 720 lines, in every frame; see
-  /// Renderer::lost. "bolus" counts while more than half of it is above the esophageal sphincter.
+  /// Renderer::lost. "bolus" counts while more than half of it is above the esophageal sphincter,
+  /// "bolus_in_mouth" while more than half is before the ramus; both for 5 mL, less for less.
   std::map<std::string, int> shows{};
 };
 

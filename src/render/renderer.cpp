@@ -2,6 +2,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "render/context.h"
@@ -13,6 +14,8 @@
 namespace swallowclip::render {
 
 namespace {
+const std::string kBolus = "bolus", kBolusInMouth = "bolus_in_mouth";
+constexpr double kPromisedBolus_m3 = 4.968e-6;  // 621 particles of (2 mm)^3
 /// One frame's geometry, shared by its views.
 struct Model {
   float error_m = 0;
@@ -178,7 +181,8 @@ Result<std::map<std::string, int>> Renderer::visiblePixels(const frame::History&
   auto scene = prepareScene(history, frame, view);
   if (!scene) return std::unexpected(scene.error());
   std::set<std::string> promised;
-  for (const auto& [structure, least] : scene->view->shows) promised.insert(structure);
+  for (const auto& [structure, least] : scene->view->shows)
+    promised.insert(structure == kBolusInMouth ? kBolus : structure);
   return scene->view->style == Style::fluoro
              ? impl_->fluoro.visiblePixels(*scene->mesh, scene->list, scene->camera, impl_->preset,
                                            promised)
@@ -187,14 +191,27 @@ Result<std::map<std::string, int>> Renderer::visiblePixels(const frame::History&
 }
 
 namespace {
-// A bolus that is mostly swallowed need not be seen any more.
+// A bolus that is mostly swallowed, or for the tongue views mostly past the ramus, need not be seen
+// any more.
 bool expected(const frame::History& h, int frame, const std::string& structure) {
-  if (structure != "bolus") return true;
-  if (h.bolus.positions.empty()) return false;
-  if (h.bolus.state.empty()) return true;
-  const auto& state = h.bolus.state[static_cast<std::size_t>(frame)];
-  const auto gone = std::count(state.begin(), state.end(), frame::ParticleState::swallowed);
-  return 2 * static_cast<std::size_t>(gone) < state.size();
+  if (!structure.starts_with(kBolus)) return true;
+  const std::size_t k = static_cast<std::size_t>(frame),
+                    n = h.bolus.positions.empty() ? 0 : h.bolus.positions[k].size();
+  if (n == 0) return false;
+  std::size_t here = n;
+  if (structure == kBolusInMouth && !h.bolus.region.empty())
+    here = std::ranges::count(h.bolus.region[k], frame::Region::oral);
+  else if (structure == kBolus && !h.bolus.state.empty())
+    here -= std::ranges::count(h.bolus.state[k], frame::ParticleState::swallowed);
+  return 2 * here > n;
+}
+
+// Promises about the bolus are made for 5 mL; a smaller one has less to be seen.
+double sizeOf(const frame::History& h, const std::string& structure) {
+  if (!structure.starts_with(kBolus) || h.bolus.positions.empty()) return 1;
+  const double offered_m3 =
+      static_cast<double>(h.bolus.positions.front().size()) * h.bolus.particleVolume_m3;
+  return std::min(1.0, std::pow(offered_m3 / kPromisedBolus_m3, 2. / 3));
 }
 }  // namespace
 
@@ -205,7 +222,8 @@ Result<std::vector<Loss>> Renderer::lost(const frame::History& history, int fram
   const double lines = impl_->preset.height / 720.0;
   std::vector<Loss> losses;
   for (const auto& [structure, least720] : impl_->preset.views.at(view).shows) {
-    const int least = static_cast<int>(least720 * lines * lines), pixels = (*seen)[structure];
+    const int least = static_cast<int>(least720 * lines * lines * sizeOf(history, structure));
+    const int pixels = (*seen)[structure == kBolusInMouth ? kBolus : structure];
     if (pixels < least && expected(history, frame, structure))
       losses.push_back({structure, pixels, least});
   }
