@@ -57,6 +57,9 @@ class Strip {
 };
 
 constexpr double kSmallest = 0.6;  // of its size, that a long text may shrink to
+// Letters are read before white air and pink skin alike: an edge of this width, in letter sizes.
+constexpr double kEdge = 0.2;
+constexpr float kEdgeAlpha = 0.75f;
 
 enum class Align { left, centre, right };
 
@@ -92,9 +95,15 @@ struct Pen {
     int w = 0, h = 0;
     pango_layout_get_pixel_size(layout.get(), &w, &h);
     const double shift = align == Align::left ? 0 : align == Align::right ? -w : -0.5 * w;
-    colour(alpha);
     cairo_move_to(cairo, std::max(0.0, x + shift), y);
-    pango_cairo_show_layout(cairo, layout.get());
+    pango_cairo_layout_path(cairo, layout.get());
+    const float contrast = def->colour_srgb.mean() > 0.5f ? 0.0f : 1.0f;
+    cairo_set_source_rgba(cairo, contrast, contrast, contrast, kEdgeAlpha);
+    cairo_set_line_width(cairo, kEdge * size);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_stroke_preserve(cairo);
+    colour(alpha);
+    cairo_fill(cairo);
     return w;
   }
 };
