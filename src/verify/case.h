@@ -88,7 +88,9 @@ struct CheckDef {
   double tolerance = 0.02;
   ErrorRule error = ErrorRule::max;
   double from_s = 0;            ///< samples before it are not compared
+  double referenceError = 0;    ///< of the reference itself; below it the error need not fall
   std::optional<double> align;  ///< series: shift in time so that both have this value together
+  bool alignBest = false;       ///< series: shift in time so that they differ least
 };
 
 struct CaseDef {

@@ -90,8 +90,8 @@ double surfaceHeight(const Snapshot& s, const QuantityDef& q) {
   return farthest(along(s, up, 1), layer, s.spacing_m);
 }
 
-/// Beside a plug of speed U the flow falls as U - u ~ (r - plug)^(1 + 1/n): a straight line through
-/// (U - u)^(n / (n + 1)) of the sheared bins meets zero at the plug's edge.
+/// Beside a plug shear stress grows as consistency times rate^n: a straight line through rate^n of
+/// the sheared bins meets zero at the plug's edge, however much a resolution rounds that edge off.
 double plugHalfWidth(const Snapshot& s) {
   const bool tube = s.def->domain.shape == Shape::tube;
   const QuantityDef q{.kind = "profile", .of = "velocity-x", .along = tube ? "radius" : "z"};
@@ -100,13 +100,18 @@ double plugHalfWidth(const Snapshot& s) {
   const auto points = sum.points();
   double fastest = 0;
   for (const auto& p : points) fastest = std::max(fastest, std::abs(p.measured));
-  const double n = s.def->fluid.index, power = n / (n + 1);
   const double middle = tube ? 0 : s.def->domain.size_m.z() / 2;
-  double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (const auto& p : points) {
+  const auto sheared = [&](const auto& p) {  // neither the rounded edge nor the wall's own bin
     const double lost = 1 - std::abs(p.measured) / std::max(fastest, 1e-300);
-    if (lost < 0.08 || lost > 0.95) continue;  // neither the rounded edge nor the wall's own bin
-    const double x = std::abs(p.along - middle), y = std::pow(lost, power);
+    return lost >= 0.08 && lost <= 0.95;
+  };
+  double sw = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    const auto &p = points[k - 1], &r = points[k];
+    if (!sheared(p) || !sheared(r) || (p.along < middle) != (r.along < middle)) continue;
+    const double rate = std::abs((r.measured - p.measured) / (r.along - p.along));
+    const double x = std::abs((p.along + r.along) / 2 - middle);
+    const double y = std::pow(rate, s.def->fluid.index);
     sw += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
   const double slope = (sw * sxy - sx * sy) / (sw * sxx - sx * sx);

@@ -77,8 +77,12 @@ std::vector<CheckDef> readChecks(const JsonNode& root) {
     c.tolerance = node.number("tolerance", 1e-15, 1e6);
     c.error = errorRule(node.choice("error", {"max", "rms", "mean", "each", "absolute"}, "max"));
     c.from_s = node.number("from_s", 0, 1e4, 0);
+    c.referenceError = node.number("reference_error", 0, c.tolerance, 0);
     if (node.has("align")) c.align = node.number("align", -1e12, 1e12);
-    if (c.align && c.quantity.kind == "profile")
+    c.alignBest = node.boolean("align_best", false);
+    if (c.align && c.alignBest)
+      node.fail("\"align\" and \"align_best\" are both given", "Keep one of them.");
+    if ((c.align || c.alignBest) && c.quantity.kind == "profile")
       node.fail("\"align\" is for series over time, this is a profile", "Remove \"align\".");
     const bool profileReference = referenceIsProfile(c.reference.kind);
     if (c.reference.kind != "table" && c.reference.kind != "constant" &&
