@@ -14,7 +14,8 @@ constexpr int kSnapshotsPerMean = 10;  // assumed (5 to 20)
 // An error below this share of what is allowed need not fall on refinement; assumed (0.1 to 5 %).
 constexpr double kAlreadyExact = 0.01;
 constexpr double kLastShare = 0.02;  // of the time since the last sample, assumed (0.01 to 0.1)
-constexpr int kShifts = 2000;        // tried either way for the best alignment, over the whole run
+constexpr int kStepsToFirstProfile = 15;  // at least, assumed (10 to 30)
+constexpr int kShifts = 2000;  // tried either way for the best alignment, over the whole run
 
 /// All that one spacing gives: per check its series, or its profiles.
 struct Run {
@@ -70,6 +71,11 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
   bolusDef.period_m = domain->period_m();
   bolusDef.slip = def.slip;
   bolusDef.full = def.fill.size() == 1 && def.fill.front().kind == FillKind::domain;
+  // Viscosity is implicit, of first order in time: a profile must not be looked at after a few
+  // steps.
+  if (std::ranges::any_of(def.checks, [](const auto& c) { return c.quantity.kind == "profile"; }))
+    bolusDef.longestStep_s =
+        std::min(bolusDef.longestStep_s, def.samples_s.front() / kStepsToFirstProfile);
   auto start = relaxed(def, *domain, bolusDef, std::move(*filled));
   if (!start) return std::unexpected(start.error());
   bolus::Solver solver(bolusDef, domain->walls(), 1);
