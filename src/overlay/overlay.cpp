@@ -18,6 +18,7 @@
 #include "overlay/retime.h"
 #include "pipeline/components.h"
 #include "pipeline/confirm.h"
+#include "pipeline/interrupt.h"
 #include "pipeline/simulation.h"
 #include "scene/preset_file.h"
 #include "scoring/measure.h"
@@ -29,9 +30,10 @@ using pipeline::Progress;
 using pipeline::RunOptions;
 
 // Corrections of moved tracks: the thresholds of the measures lie a little beside the tracks' own
-// times. Two leave less than a frame; what only a bolus shows may need one more with it
-// (events depend on each other: a second one swings back).
-constexpr int kCorrections = 2, kWetCorrections = 1;
+// times. Two without the bolus cost little and leave less than a frame; what only a bolus shows
+// (BPM) follows a change of what was asked by 0.5 to 1 of it, so two with it suffice mostly.
+constexpr int kDryCorrections = 2, kWetCorrections = 2;
+constexpr double kLost_s = 1;  // an event that doesn't happen at all; assumed, more than any is off
 
 Result<std::unique_ptr<study::Study>> openStudy(const RunOptions& o, const fs::path& path,
                                                 Progress& progress) {
@@ -120,21 +122,61 @@ Result<Timed> warped(const RunOptions& o, const frame::History& model, const Mar
   return Timed{retimed(model, *warp, clock.time_s, clock.rate.hz()), *metrics, *warp, model.meta};
 }
 
-/// Asks each event for as much later as it was measured too early; returns the sum of that, s.
-double correct(std::vector<EventPair>& asked, const std::vector<EventPair>& wanted,
-               const scoring::Metrics& measured, double cue_s) {
+/// Asks each event that is more than half a frame off for as much later as it was measured too
+/// early; returns the sum of that, s. Before the bolus is there, what it decides is left alone:
+/// BPM, and the tongue's onset, which is read off the bolus too.
+double correct(std::vector<EventPair>& pairs, const scoring::Metrics& measured, double cue_s,
+               double frame_s, bool dry) {
   double sum_s = 0;
-  for (std::size_t k = 0; k < asked.size(); ++k)
-    if (const auto* e = measured.event(asked[k].name); e && e->time_s) {
-      const double early_s = wanted[k].study_s - (*e->time_s + cue_s);
-      asked[k].study_s += early_s;
-      sum_s += std::abs(early_s);
-    }
+  for (EventPair& p : pairs) {
+    if (dry && (p.name == "BPM" || p.name == "tongue_onset")) continue;
+    const auto* e = measured.event(p.name);
+    const bool happens = e && e->time_s;
+    const double early_s = happens ? p.study_s - (*e->time_s + cue_s) : kLost_s;
+    if (std::abs(early_s) <= frame_s / 2 + kSameTime_s) continue;
+    if (happens) p.correction_s += early_s;
+    sum_s += std::abs(early_s);
+  }
   return sum_s;
 }
 
-/// Tracks moved, corrected by what is measured without a bolus, then simulated with it; again while
-/// what only a bolus shows comes out beside its time. The run that meets the events best is taken.
+struct Run {
+  frame::History history;
+  scoring::Metrics metrics;
+  double cue_s = 0;
+};
+
+Result<Run> simulated(const RunOptions& o, const MovedSwallow& moved, const fs::path& file,
+                      double fps, Progress& progress) {
+  auto history = pipeline::simulateSwallow(o, moved.swallow, file, fps, progress);
+  if (!history) return std::unexpected(history.error());
+  auto metrics = pipeline::measureHistory(o.scenesFolder(), *history);
+  if (!metrics) return std::unexpected(metrics.error());
+  return Run{std::move(*history), std::move(*metrics), moved.cue_s};
+}
+
+/// Tracks moved, corrected by what is measured without a bolus, then simulated with it.
+Result<Run> movedRun(const RunOptions& o, const kinematics::SwallowDef& swallow,
+                     const fs::path& file, std::vector<EventPair>& pairs, double frame_s,
+                     double fps, Progress& progress) {
+  progress.stage("moving the motion");
+  RunOptions dry = o;
+  dry.bolus = "none";
+  for (int k = 0; o.hasBolus() && k < kDryCorrections; ++k) {
+    const auto moved = movedTo(swallow, pairs, frame_s);
+    if (!moved) return std::unexpected(moved.error());
+    const auto run = simulated(dry, *moved, file, fps, progress);
+    if (!run) return run;
+    if (correct(pairs, run->metrics, run->cue_s, frame_s, true) == 0) break;
+  }
+  const auto moved = movedTo(swallow, pairs, frame_s);
+  if (!moved) return std::unexpected(moved.error());
+  progress.stage("simulating the model again");
+  return simulated(o, *moved, file, fps, progress);
+}
+
+/// Motion moved to the study's events and simulated anew; again while what only a bolus shows comes
+/// out beside its time. The run that meets the events best is taken.
 Result<Timed> resimulated(const RunOptions& o, const frame::History& model, const Marks& marks,
                           const study::StudyInfo& info, const Clock& clock, double fps,
                           Progress& progress) {
@@ -143,40 +185,31 @@ Result<Timed> resimulated(const RunOptions& o, const frame::History& model, cons
   fs::path file;
   auto swallow = swallowOf(o, &model, &file);
   if (!swallow) return std::unexpected(swallow.error());
-  const std::vector<EventPair> wanted = pairEvents(marks, info, *metrics);
-  std::vector<EventPair> pairs = wanted;
-  RunOptions dry = o;
-  dry.bolus = "none";
-  const double frame_s = 1 / info.rate_hz();
+  std::vector<EventPair> pairs = pairEvents(marks, info, *metrics);
   RunOptions wet = o;
   if (!o.history.empty()) wet.bolus = model.meta.bolus;
-  auto moved = movedTo(*swallow, pairs, frame_s);
-  if (!moved) return std::unexpected(moved.error());
+  const double frame_s = 1 / info.rate_hz();
   std::optional<Timed> best;
   double least_s = INFINITY;
-  for (int run = 0;; ++run) {
-    const bool dryRun = run < kCorrections;
-    progress.stage(dryRun ? "moving the motion" : "simulating the model again");
-    auto history =
-        pipeline::simulateSwallow(dryRun ? dry : wet, moved->swallow, file, fps, progress);
-    if (!history) return std::unexpected(history.error());
-    auto measured = pipeline::measureHistory(o.scenesFolder(), *history);
-    if (!measured) return std::unexpected(measured.error());
-    std::string inputs = history->meta.inputsSha256;
-    for (const EventPair& p : pairs) inputs += fmt::format("{} {:.9g}\n", p.name, p.study_s);
-    const double off_s = correct(pairs, wanted, *measured, moved->cue_s);
-    if (!dryRun && off_s < least_s) {
-      least_s = off_s;
-      history->meta.inputsSha256 = sha256Hex(inputs);
-      const TimeWarp warp = TimeWarp::shift(moved->cue_s);
-      best = Timed{retimed(*history, warp, clock.time_s, clock.rate.hz()), *measured, warp,
-                   history->meta};
+  for (int k = 0; least_s > 0 && k <= kWetCorrections; ++k) {
+    auto run = movedRun(wet, *swallow, file, pairs, frame_s, fps, progress);
+    if (!run && best && !pipeline::interrupted()) {
+      progress.note("a further correction can't be simulated; the best run before it is shown");
+      break;
     }
-    if (best && (least_s < 0.5 * frame_s || run == kCorrections + kWetCorrections))
-      return std::move(*best);
-    moved = movedTo(*swallow, pairs, frame_s);
-    if (!moved) return std::unexpected(moved.error());
+    if (!run) return std::unexpected(run.error());
+    std::string inputs = run->history.meta.inputsSha256;
+    for (const EventPair& p : pairs)
+      inputs += fmt::format("{} {:.9g}\n", p.name, p.study_s + p.correction_s);
+    const double off_s = correct(pairs, run->metrics, run->cue_s, frame_s, false);
+    if (off_s >= least_s) continue;
+    least_s = off_s;
+    run->history.meta.inputsSha256 = sha256Hex(inputs);
+    const TimeWarp warp = TimeWarp::shift(run->cue_s);
+    best = Timed{retimed(run->history, warp, clock.time_s, clock.rate.hz()), run->metrics, warp,
+                 run->history.meta};
   }
+  return std::move(*best);
 }
 
 ComposeDef composeDef(const pipeline::OverlayOptions& o) {

@@ -2,6 +2,7 @@
 #include "overlay/resimulate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace swallowclip::overlay {
@@ -11,6 +12,7 @@ using kinematics::Track;
 
 constexpr int kFrontKnots = 80;        // resampled contact front: every 18 ms; assumed, 40 to 200
 constexpr double kLeastStep_s = 1e-4;  // between two of its knots
+constexpr double kCrowded_s = 0.1;     // between events of the model; assumed, 0.07 to 0.13
 
 /// Bolus before bone before the rest: what the warp honours first when not all agree.
 const std::vector<std::string>& priority() {
@@ -29,12 +31,32 @@ constexpr Anchor kAnchors[] = {
     {"UESO", "ues", &Track::onset_s},           {"UESMax", "ues", &Track::peak_s},
     {"UESC", "ues", &Track::offset_s}};
 
-Result<TimeWarp> agreeingWarp(const std::vector<EventPair>& pairs, double frame_s) {
+bool movesItself(const std::string& name) {
+  return std::ranges::any_of(kAnchors, [&](const Anchor& a) { return name == a.event; });
+}
+
+/// Whether a warp through `taken` had better leave `p` out. Between two events that are one moment
+/// of the model but two of the study it would stand still and, being smooth, hasten what comes just
+/// before: asked later, the bolus would come earlier. Near ones bend it in the same way, which is
+/// needless where `p` can move on its own.
+bool crowds(const EventPair& p, const std::vector<EventPair>& taken, double frame_s) {
+  const double near_s = movesItself(p.name) ? kCrowded_s : frame_s / 2;
+  return std::ranges::any_of(taken, [&](const EventPair& q) {
+    return std::abs(p.model_s - q.model_s) < near_s &&
+           (movesItself(p.name) || std::abs(p.study_s - q.study_s) > kSameTime_s);
+  });
+}
+
+/// What has tracks of its own is corrected there: the warp does not go along, else mending the
+/// hyoid's burst would move the bolus.
+Result<TimeWarp> agreeingWarp(std::vector<EventPair> pairs, double frame_s) {
+  for (EventPair& p : pairs)
+    if (!movesItself(p.name)) p.study_s += p.correction_s;
   std::vector<EventPair> taken;
   std::optional<TimeWarp> warp;
   for (const std::string& name : priority())
     for (const EventPair& p : pairs) {
-      if (p.name != name) continue;
+      if (p.name != name || crowds(p, taken, frame_s)) continue;
       std::vector<EventPair> more = taken;
       more.push_back(p);
       if (auto made = TimeWarp::make(more, frame_s)) {
@@ -89,7 +111,7 @@ Result<MovedSwallow> movedTo(const SwallowDef& from, const std::vector<EventPair
   }
   to.front_m = Curve(x, y);
   for (const EventPair& p : pairs) {
-    const double late_s = p.study_s - moved.cue_s - map(p.model_s);
+    const double late_s = p.study_s + p.correction_s - moved.cue_s - map(p.model_s);
     for (const Anchor& a : kAnchors)
       if (p.name == a.event)
         if (const auto found = to.tracks.find(a.track); found != to.tracks.end()) {

@@ -15,9 +15,11 @@ struct MovedSwallow {
   double cue_s = 0;  ///< study time of the swallow's own time 0
 };
 
-/// The whole timeline follows a warp through as many pairs as keep the model's order; each of the
-/// others moves its own tracks: HYB the hyoid's, LVC and LVCoff the arytenoids', UESO, UESMax and
-/// UESC the sphincter's. The rate of a rocking tongue stays.
+/// The whole timeline follows a warp through as many pairs as keep the model's order, BPM first;
+/// each of the others moves its own tracks: HYB the hyoid's, LVC and LVCoff the arytenoids', UESO,
+/// UESMax and UESC the sphincter's. So do those of them that lie next to another in the model, and
+/// their corrections always, so that they leave the bolus alone. The rate of a rocking tongue
+/// stays.
 Result<MovedSwallow> movedTo(const kinematics::SwallowDef& swallow,
                              const std::vector<EventPair>& pairs, double frame_s);
 }  // namespace swallowclip::overlay

@@ -28,7 +28,7 @@ Result<TimeWarp> TimeWarp::make(std::vector<EventPair> pairs, double frame_s) {
   for (std::size_t i = 0; i < pairs.size();) {
     std::size_t end = i;
     double mean_s = 0;
-    for (; end < pairs.size() && pairs[end].study_s == pairs[i].study_s; ++end)
+    for (; end < pairs.size() && pairs[end].study_s - pairs[i].study_s <= kSameTime_s; ++end)
       mean_s += pairs[end].model_s;
     mean_s /= static_cast<double>(end - i);
     for (std::size_t k = i; k < end; ++k)

@@ -17,7 +17,10 @@ namespace swallowclip::overlay {
 struct EventPair {
   std::string name;
   double study_s = 0, model_s = 0;
+  double correction_s = 0;  ///< by how much later a moved motion is asked for it; not for the warp
 };
+
+constexpr double kSameTime_s = 1e-6;  ///< study times are decimal fractions of a second
 
 /// Events marked in the study and measured in the model, by study time.
 std::vector<EventPair> pairEvents(const Marks& marks, const study::StudyInfo& study,
@@ -25,8 +28,9 @@ std::vector<EventPair> pairEvents(const Marks& marks, const study::StudyInfo& st
 
 class TimeWarp {
  public:
-  /// Pairs at one study time share a knot at their mean model time, as long as each stays within
-  /// half of `frame_s`. Refused: no pair, pairs whose order differs, pairs that can't share a knot.
+  /// Pairs at one study time (within kSameTime_s) share a knot at their mean model time, as long as
+  /// each stays within half of `frame_s`. Refused: no pair, pairs whose order differs, pairs that
+  /// can't share a knot.
   static Result<TimeWarp> make(std::vector<EventPair> pairs, double frame_s);
   /// model = study - shift
   static TimeWarp shift(double shift_s);

@@ -130,4 +130,53 @@ TEST(Resimulate, TracksFollowTheWarpAndTheirOwnEvents) {
       late->swallow.tracks.at("hyoid_superior").onset_s - m.tracks.at("hyoid_superior").onset_s,
       1.7 - warp->study_s(1.1), 1e-6);
 }
+
+// HYB is BPM's own moment in the model: a warp through both would stand still between them and
+// hasten what releases the bolus.
+TEST(Resimulate, TheBolusAskedLaterComesLater) {
+  kinematics::SwallowDef s;
+  s.bpm_s = 1.2;
+  s.front_m = Curve({-0.6, 0, 0.8}, {0, 0.05, 0.19});
+  s.tracks["hyoid_superior"] = {0, 0.25, 0.55, 1.1, 0.014, 1, 0, 1};
+  s.tracks["chute"] = {-0.42, -0.05, 0.3, 0.6, 0.012, 1, 0, 1};
+  const std::vector<EventPair> pairs{{"tongue_onset", 0.9, 0.933},
+                                     {"BPM", 1.2, 1.233},
+                                     {"HYB", 1.2, 1.233},
+                                     {"LVC", 1.267, 1.3},
+                                     {"UESO", 1.467, 1.467}};
+  const auto release_s = [&](const std::vector<EventPair>& asked) {
+    const auto moved = movedTo(s, asked, kFrame_s);
+    EXPECT_TRUE(moved);
+    return moved->cue_s + moved->swallow.bpm_s + moved->swallow.tracks.at("chute").peak_s;
+  };
+  std::vector<EventPair> asked = pairs;
+  double before_s = release_s(asked);
+  for (int k = 1; k <= 6; ++k) {  // past HYB, past LVC
+    asked[1].correction_s = k * kFrame_s / 2;
+    const double now_s = release_s(asked);
+    EXPECT_GT(now_s, before_s + 0.4 * kFrame_s / 2) << k;
+    EXPECT_LT(now_s, before_s + 1.2 * kFrame_s / 2) << k;
+    before_s = now_s;
+  }
+  // corrections of what moves itself leave the bolus alone, as does a rounding error
+  asked = pairs;
+  asked[2].correction_s = kFrame_s;
+  asked[3].correction_s = -kFrame_s;
+  EXPECT_NEAR(release_s(asked), release_s(pairs), 1e-9);
+  const auto late = movedTo(s, asked, kFrame_s), plain = movedTo(s, pairs, kFrame_s);
+  EXPECT_NEAR(late->swallow.tracks.at("hyoid_superior").onset_s -
+                  plain->swallow.tracks.at("hyoid_superior").onset_s,
+              kFrame_s, 1e-9);
+  asked = pairs;
+  asked[2].study_s += 1e-15;
+  EXPECT_NEAR(release_s(asked), release_s(pairs), 1e-9);
+}
+
+TEST(Retime, RoundingDoesNotPartTwoEvents) {
+  const auto warp =
+      TimeWarp::make({{"tongue", 0.9, 0.9}, {"BPM", 1, 1}, {"HYB", 1 + 1e-15, 1}}, kFrame_s);
+  ASSERT_TRUE(warp);
+  EXPECT_NEAR(warp->model_s(0.98), 0.98, 1e-3);  // no standstill, nothing hastened
+}
+
 }  // namespace swallowclip::overlay
