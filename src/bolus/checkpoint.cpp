@@ -110,6 +110,7 @@ std::uint64_t kindOf(const BolusDef& d, std::size_t triangles) {
                             d.courant,
                             d.densityTolerance,
                             d.rateTolerance,
+                            d.solveShare,
                             static_cast<double>(d.kernel),
                             static_cast<double>(d.solver),
                             static_cast<double>(d.slip),
@@ -168,7 +169,7 @@ Result<void> Solver::restore(std::string_view bytes) {
   const std::size_t n = s.particles.positions.size();
   s.projection.resize(static_cast<int>(n));
   s.projection.full = s.def.full;
-  s.projection.tolerances = {s.def.densityTolerance, s.def.rateTolerance};
+  s.projection.tolerances = {s.def.densityTolerance, s.def.rateTolerance, s.def.solveShare};
   WallField::Box box;
   in(s.projection.densityWarm());
   in(s.projection.rateWarm());
@@ -179,7 +180,8 @@ Result<void> Solver::restore(std::string_view bytes) {
   if (!in.fine || !in.atEnd()) return refuse("its arrays do not fit");
   s.motion->at(s.time_s, s.wallPositions, s.wallVelocities);
   s.field.rebuild(s.wallTriangles, s.wallPositions, s.wallVelocities, box, s.skipped);
-  s.neighbours.build(s.particles.positions, s.active, s.table, s.volume_m3, s.def.period_m, s.pool);
+  s.lastNearest.assign(s.active.size(), -1);
+  s.findNeighbours();
   return {};
 }
 }  // namespace swallowclip::bolus

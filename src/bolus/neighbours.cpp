@@ -9,7 +9,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr int kChunk = 128;         // particles per work item
+constexpr int kChunk = 64;          // particles per work item
 constexpr float kFarAway = 1e18f;   // m; fills vectors up, its square is still a number
 constexpr int kMaxCells = 1 << 21;  // a stray particle must not cost the memory of a continent
 }  // namespace
@@ -65,14 +65,15 @@ void PointGrid::build(std::span<const Vec3> points, std::span<const std::uint8_t
 void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                                double cell_m, const Vec3& period_m) {
   struct Point {
-    Vec3 x;
+    Vec3 x, shift;
     int id;
     bool image;
   };
   std::vector<Point> all;
   all.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (take.empty() || take[i]) all.push_back({points[i], static_cast<int>(i), false});
+    if (take.empty() || take[i])
+      all.push_back({points[i], Vec3::Zero(), static_cast<int>(i), false});
   count = static_cast<int>(all.size());
   for (int axis = 0; axis < 3; ++axis) {
     if (period_m[axis] <= 0) continue;
@@ -80,6 +81,7 @@ void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std
       for (const double shift : {-period_m[axis], period_m[axis]}) {
         Point p = all[i];
         p.x[axis] += shift;
+        p.shift[axis] += shift;
         p.image = true;
         if (p.x[axis] > -cell_m && p.x[axis] < period_m[axis] + cell_m) all.push_back(p);
       }
@@ -112,29 +114,30 @@ void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std
 
   id.resize(count);
   self_.resize(count);
+  builtAt_.resize(count);
   slot.assign(points.size(), -1);
-  owner_.resize(total);
+  owner_.resize(total + 1);
+  shift_.resize(total);
   for (auto* s : {&sx_, &sy_, &sz_}) s->assign(total + simd::kLanes, kFarAway);
-  for (auto* s : {&x, &y, &z}) s->assign(count + simd::kLanes, 0.f);
+  places_.assign(total + 1);
   int k = 0;
   for (int s = 0; s < total; ++s) {
     const Point& p = all[order[s]];
     if (!p.image) {
       id[k] = p.id;
+      builtAt_[k] = p.x;
       self_[k] = s;
       slot[p.id] = k++;
     }
-    const Eigen::Vector3f f = (p.x - low_).cast<float>();
-    sx_[s] = f.x();
-    sy_[s] = f.y();
-    sz_[s] = f.z();
+    shift_[s] = p.shift;
+    places_.set(s, p.x - low_);
+    sx_[s] = places_[s][0];
+    sy_[s] = places_[s][1];
+    sz_[s] = places_[s][2];
   }
+  places_.set(total, Vec3::Constant(-kFarAway));
   for (int s = 0; s < total; ++s) owner_[s] = slot[all[order[s]].id];
-  for (int i = 0; i < count; ++i) {
-    x[i] = sx_[self_[i]];
-    y[i] = sy_[self_[i]];
-    z[i] = sz_[self_[i]];
-  }
+  owner_[total] = count;
 }
 
 void Neighbours::around(const Vec3& p, std::vector<Near>& out) const {
@@ -143,17 +146,22 @@ void Neighbours::around(const Vec3& p, std::vector<Near>& out) const {
   const Vec3 at = p - low_;
   Eigen::Vector3i from, to;
   for (int a = 0; a < 3; ++a) {
-    const int cell =
-        static_cast<int>(std::floor(std::clamp(at[a] / cell_m_, -2.0, size_[a] + 1.0)));
-    from[a] = std::max(cell - 1, 0);
-    to[a] = std::min(cell + 1, size_[a] - 1);
+    // in their cells particles lie where they were built
+    const double reach = support_m_ + skin_m_ / 2;
+    const auto cell = [&](double x) {
+      return static_cast<int>(std::floor(std::clamp(x / cell_m_, -2.0, size_[a] + 1.0)));
+    };
+    from[a] = std::max(cell(at[a] - reach), 0);
+    to[a] = std::min(cell(at[a] + reach), size_[a] - 1);
   }
   if (from.x() > to.x()) return;
   for (int cz = from.z(); cz <= to.z(); ++cz)
     for (int cy = from.y(); cy <= to.y(); ++cy) {
       const int row = (cz * size_.y() + cy) * size_.x();
-      for (int k = cellStart_[row + from.x()]; k < cellStart_[row + to.x() + 1]; ++k)
-        out.push_back({id[owner_[k]], (Vec3(sx_[k], sy_[k], sz_[k]) - at).norm()});
+      for (int k = cellStart_[row + from.x()]; k < cellStart_[row + to.x() + 1]; ++k) {
+        const double away_m = (places_.at(k).cast<double>() - at).norm();
+        if (away_m < support_m_) out.push_back({id[owner_[k]], away_m});
+      }
     }
 }
 
@@ -176,19 +184,47 @@ SC_CLONES int within(const float* sx, const float* sy, const float* sz, int begi
   return found;
 }
 
-/// Gradients V W'(r) / r d and the sum of V W of one list of whole vectors; padding has d = 2 H.
-SC_CLONES double gradients(const KernelTable& table, float volume, int length, const float* dx,
-                           const float* dy, const float* dz, float* r, float* gx, float* gy,
-                           float* gz) {
+/// The candidates (whole vectors) within reach of `own`; returns how many.
+SC_CLONES int stillWithin(const float* places, const float* own, const int* candidates, int length,
+                          float reach2, int* out) {
+  using namespace simd;
+  int found = 0;
+  for (int k = 0; k < length; k += kLanes) {
+    const F8x3 o = gather3(places, candidates + k);
+    const F8 dx = all(own[0]) - o.x, dy = all(own[1]) - o.y, dz = all(own[2]) - o.z;
+    const I8 near = dx * dx + dy * dy + dz * dz < all(reach2);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      out[found] = candidates[k + lane];
+      found -= near[lane];
+    }
+  }
+  return found;
+}
+
+/// One list of whole vectors.
+struct List {
+  const float *places, *own;
+  const int* neighbours;  ///< places
+  int length;
+  float *r, *gx, *gy, *gz;  ///< gradients V W'(r) / r d
+  float *sumG, *moment;     ///< as in Neighbours
+};
+/// Fills a list's gradients and sums; returns the sum of V W.
+SC_CLONES double gradients(const KernelTable& table, float volume, const List& l) {
   using namespace simd;
   const float perHalfSupport = static_cast<float>(2 / table.support_m());
   const float w0 = static_cast<float>(table.selfW());
   const float scale = volume * w0 * perHalfSupport * perHalfSupport;
-  F8 total = all(0);
-  for (int k = 0; k < length; k += kLanes) {
-    const F8 x = load(dx + k), y = load(dy + k), z = load(dz + k);
+  const F8 farthest = all(static_cast<float>(2 * table.support_m()));
+  F8 total = all(0), g[3] = {}, t[6] = {};
+  for (int k = 0; k < l.length; k += kLanes) {
+    const F8x3 o = gather3(l.places, l.neighbours + k);
+    // what fills up the list is far away
+    const F8 x = smallest(all(l.own[0]) - o.x, farthest),
+             y = smallest(all(l.own[1]) - o.y, farthest),
+             z = smallest(all(l.own[2]) - o.z, farthest);
     const F8 distance = root(x * x + y * y + z * z);
-    store(r + k, distance);
+    store(l.r + k, distance);
     F8 value, slope;
     if (table.isCubicSpline()) {
       const F8 q = distance * all(perHalfSupport);
@@ -210,83 +246,117 @@ SC_CLONES double gradients(const KernelTable& table, float volume, int length, c
       value = w + part * wStep;
       slope = all(volume) * (s + part * sStep);
     }
-    store(gx + k, slope * x);
-    store(gy + k, slope * y);
-    store(gz + k, slope * z);
+    const F8 gx = slope * x, gy = slope * y, gz = slope * z;
+    store(l.gx + k, gx);
+    store(l.gy + k, gy);
+    store(l.gz + k, gz);
     total += value;
+    g[0] += gx;
+    g[1] += gy;
+    g[2] += gz;
+    // r |g| n n = -g d
+    t[0] -= gx * x;
+    t[1] -= gy * y;
+    t[2] -= gz * z;
+    t[3] -= gx * y;
+    t[4] -= gx * z;
+    t[5] -= gy * z;
   }
+  for (int a = 0; a < 3; ++a) l.sumG[a] = sum(g[a]);
+  for (int a = 0; a < 6; ++a) l.moment[Tensors::kAt[a]] = sum(t[a]);
   return static_cast<double>(volume) * sum(total);
 }
 }  // namespace
 
-void Neighbours::search(int begin, int end, const KernelTable& kernel, double volume_m3,
-                        Found& out) {
+void Neighbours::search(int begin, int end, float reach, Found& out) const {
   using simd::kLanes;
-  out.index.clear();
   out.length.clear();
-  const float reach = static_cast<float>(kernel.support_m());
   std::vector<int>& places = out.places;
+  std::size_t n = 0;
   for (int i = begin; i < end; ++i) {
-    const int cx = cellAlong(x[i], 0), cy = cellAlong(y[i], 1), cz = cellAlong(z[i], 2);
-    std::size_t n = 0;
+    const std::size_t old = n;
+    const int self = self_[i];
+    const float x = sx_[self], y = sy_[self], z = sz_[self];
+    const int cx = cellAlong(x, 0), cy = cellAlong(y, 1), cz = cellAlong(z, 2);
     for (int rz = std::max(cz - 1, 0); rz <= std::min(cz + 1, size_.z() - 1); ++rz)
       for (int ry = std::max(cy - 1, 0); ry <= std::min(cy + 1, size_.y() - 1); ++ry) {
         const int row = (rz * size_.y() + ry) * size_.x();
         const int first = cellStart_[row + std::max(cx - 1, 0)];
         const int last = cellStart_[row + std::min(cx + 1, size_.x() - 1) + 1];
-        places.resize(std::max(places.size(), n + last - first + kLanes));
-        n += within(sx_.data(), sy_.data(), sz_.data(), first, last, x[i], y[i], z[i],
-                    reach * reach, &places[n]);
+        places.resize(std::max(places.size(), n + last - first + 2 * kLanes));
+        n += within(sx_.data(), sy_.data(), sz_.data(), first, last, x, y, z, reach * reach,
+                    &places[n]);
       }
-    const std::size_t old = out.index.size();
-    const std::size_t length = (n - 1 + kLanes - 1) / kLanes * kLanes;  // without itself
-    out.index.resize(old + length, count);
-    for (auto* d : {&out.dx, &out.dy, &out.dz}) d->resize(old + length);
-    for (auto* g : {&out.r, &out.gx, &out.gy, &out.gz}) g->resize(old + length);
-    std::size_t k = old;
-    for (std::size_t e = 0; e < n; ++e) {
-      const int p = places[e];
-      if (p == self_[i]) continue;
-      out.index[k] = owner_[p];
-      out.dx[k] = x[i] - sx_[p];
-      out.dy[k] = y[i] - sy_[p];
-      out.dz[k++] = z[i] - sz_[p];
-    }
-    for (; k < old + length; ++k) {
-      out.index[k] = count;
-      out.dx[k] = 2 * reach;
-      out.dy[k] = out.dz[k] = 0;
-    }
-    const float volume = static_cast<float>(volume_m3);
-    sumW[i] = volume_m3 * kernel.selfW() +
-              gradients(kernel, volume, static_cast<int>(length), &out.dx[old], &out.dy[old],
-                        &out.dz[old], &out.r[old], &out.gx[old], &out.gy[old], &out.gz[old]);
-    out.length.push_back(static_cast<int>(length));
+    const auto own = std::find(places.begin() + old, places.begin() + n, self);
+    std::copy(own + 1, places.begin() + n, own);
+    for (--n; (n - old) % kLanes != 0; ++n)
+      places[n] = static_cast<int>(shift_.size());  // far away
+    out.length.push_back(static_cast<int>(n - old));
   }
 }
 
 void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                        const KernelTable& kernel, double volume_m3, const Vec3& period_m,
-                       ThreadPool& pool) {
-  sortIntoCells(points, take, kernel.support_m(), period_m);
-  sumW.assign(count, 0.0);
+                       double skin_m, ThreadPool& pool) {
+  support_m_ = kernel.support_m();
+  skin_m_ = skin_m;
+  sortIntoCells(points, take, support_m_ + skin_m, period_m);
   start.assign(count + 1, 0);
   found_.resize((count + kChunk - 1) / kChunk);
   pool.forChunks(count, kChunk, [&](int begin, int end, int chunk) {
-    search(begin, end, kernel, volume_m3, found_[chunk]);
+    search(begin, end, static_cast<float>(support_m_ + skin_m), found_[chunk]);
     for (int i = begin; i < end; ++i) start[i + 1] = found_[chunk].length[i - begin];
   });
   for (int i = 0; i < count; ++i) start[i + 1] += start[i];
+  candidates_.resize(start[count]);
+  pool.forChunks(count, kChunk, [&](int begin, int end, int chunk) {
+    std::copy_n(found_[chunk].places.begin(), start[end] - start[begin],
+                candidates_.begin() + start[begin]);
+  });
+  stop.resize(count);
   index.resize(start[count]);
   for (auto* g : {&r, &gx, &gy, &gz}) g->resize(start[count]);
-  pool.forChunks(count, kChunk, [&](int begin, int, int chunk) {
-    const Found& f = found_[chunk];
-    const int at = start[begin];
-    std::copy(f.index.begin(), f.index.end(), index.begin() + at);
-    std::copy_n(f.r.begin(), f.index.size(), r.begin() + at);
-    std::copy_n(f.gx.begin(), f.index.size(), gx.begin() + at);
-    std::copy_n(f.gy.begin(), f.index.size(), gy.begin() + at);
-    std::copy_n(f.gz.begin(), f.index.size(), gz.begin() + at);
+  sumW.resize(count);
+  sumG.assign(count);
+  moment.assign(count);
+  measure(kernel, volume_m3, pool);
+}
+
+bool Neighbours::follow(std::span<const Vec3> points, std::span<const std::uint8_t> take,
+                        const KernelTable& kernel, double volume_m3, ThreadPool& pool) {
+  const double most2 = skin_m_ * skin_m_ / 4;
+  if (most2 == 0 || slot.size() != points.size()) return false;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if ((take.empty() || take[p]) != (slot[p] >= 0)) return false;
+    if (slot[p] >= 0 && !((points[p] - builtAt_[slot[p]]).squaredNorm() < most2)) return false;
+  }
+  for (std::size_t s = 0; s < shift_.size(); ++s)
+    places_.set(static_cast<int>(s), points[id[owner_[s]]] + shift_[s] - low_);
+  measure(kernel, volume_m3, pool);
+  return true;
+}
+
+// Gradients and sums of who is within the kernel's support.
+void Neighbours::measure(const KernelTable& kernel, double volume_m3, ThreadPool& pool) {
+  using simd::kLanes;
+  const float reach = static_cast<float>(support_m_), volume = static_cast<float>(volume_m3);
+  const int farAway = static_cast<int>(shift_.size());
+  pool.forChunks(count, kChunk, [&](int begin, int end, int) {
+    thread_local std::vector<int> near;
+    for (int i = begin; i < end; ++i) {
+      const int first = start[i], most = start[i + 1] - first;
+      near.resize(std::max<std::size_t>(near.size(), most + kLanes));
+      const float* own = places_[self_[i]];
+      int n = stillWithin(places_.data(), own, candidates_.data() + first, most, reach * reach,
+                          near.data());
+      for (; n % kLanes != 0; ++n) near[n] = farAway;
+      stop[i] = first + n;
+      for (int k = 0; k < n; ++k) index[first + k] = owner_[near[k]];
+      sumW[i] = volume_m3 * kernel.selfW() +
+                gradients(kernel, volume,
+                          {places_.data(), own, near.data(), n, r.data() + first, gx.data() + first,
+                           gy.data() + first, gz.data() + first, sumG[i], moment[i]});
+    }
   });
 }
 }  // namespace swallowclip::bolus

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bolus/kernels.h"
+#include "bolus/sweeps.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 
@@ -52,18 +53,29 @@ struct Neighbours {
   int count = 0;                  ///< slots
   std::vector<int> id;            ///< [count] particle of a slot
   std::vector<int> slot;          ///< [particle] its slot, or -1
-  std::vector<int> start;         ///< [count + 1] in whole vectors (simd::kLanes)
+  std::vector<int> start, stop;   ///< [count + 1], [count] of each list, in whole vectors (kLanes)
   std::vector<int> index;         ///< slots of the neighbours
   std::vector<float> gx, gy, gz;  ///< V gradW(x_i - x_j) at x_i (1/m)
   std::vector<float> r;           ///< distances, m
-  std::vector<float> x, y, z;     ///< [count + padding] from the low corner, m
   std::vector<double> sumW;       ///< [count] V times the sum of W, the particle itself included
+  Floats3 sumG;                   ///< [count] sum of the gradients, 1/m
+  Tensors moment;                 ///< [count] sum of r |g| n n, n along the pair: one when full
 
-  /// `take` [particle] says who is active. With a period, images count as neighbours too.
+  /// `take` [particle] says who is active. With a period, images count as neighbours too. Who might
+  /// be a neighbour is looked for within `skin_m` more than the kernel reaches.
   void build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
-             const KernelTable& kernel, double volume_m3, const Vec3& period_m, ThreadPool& pool);
+             const KernelTable& kernel, double volume_m3, const Vec3& period_m, double skin_m,
+             ThreadPool& pool);
+  /// The same particles in new places, of whom nobody has moved by more than half the skin since
+  /// they were built; else, or when others are active, nothing is done and false returned.
+  bool follow(std::span<const Vec3> points, std::span<const std::uint8_t> take,
+              const KernelTable& kernel, double volume_m3, ThreadPool& pool);
 
-  /// Particles of the last build in the cells around any place, and how far away (m).
+  PairLists lists() const {
+    return {start.data(), stop.data(), index.data(), gx.data(), gy.data(), gz.data()};
+  }
+
+  /// Particles at their last places that are within a kernel support of p, and how far away (m).
   struct Near {
     int particle;
     double away_m;
@@ -72,23 +84,27 @@ struct Neighbours {
 
  private:
   struct Found {
-    std::vector<int> index, length, places;
-    std::vector<float> dx, dy, dz, r, gx, gy, gz;
+    std::vector<int> places, length;
   };
   void sortIntoCells(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                      double cell_m, const Vec3& period_m);
-  void search(int begin, int end, const KernelTable& kernel, double volume_m3, Found& out);
+  void search(int begin, int end, float reach_m, Found& out) const;
+  void measure(const KernelTable& kernel, double volume_m3, ThreadPool& pool);
 
   int cellAlong(float x_m, int axis) const {
     return std::min(static_cast<int>(x_m / cell_m_), size_[axis] - 1);
   }
 
-  // sorted points, images of periodic neighbours among them
+  // sorted places, images of periodic neighbours among them, and one more far away from all
   Vec3 low_ = Vec3::Zero();
-  double cell_m_ = 1;
+  double cell_m_ = 1, support_m_ = 0, skin_m_ = 0;
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
-  std::vector<int> cellStart_, owner_, self_;  // owner: slot; self: [count] place of a slot
-  std::vector<float> sx_, sy_, sz_;
+  std::vector<int> cellStart_, owner_, self_;  // owner: [place] slot; self: [count] place of a slot
+  std::vector<Vec3> shift_;                    // [place] of an image
+  std::vector<float> sx_, sy_, sz_;            // [place] when built, from the low corner
+  Floats3 places_;                             // [place] now
+  std::vector<Vec3> builtAt_;                  // [count]
   std::vector<Found> found_;
+  std::vector<int> candidates_;  // places, as `index`
 };
 }  // namespace swallowclip::bolus

@@ -29,19 +29,21 @@ constexpr double kWorstLeft = 0.02;
 // every step, however short, it would do so at a speed that shortens the next step, and so on to
 // 100 m/s. Assumed (0.05 to 0.2 ms).
 constexpr double kCorrection_s = 1e-4;
-// A solve goes on until it leaves this share of what it was to remove, or its tolerance if
-// that is less; and no further than the second share of its tolerance. Fluid driven through a long
-// gap needs it: the compression that drives it is small beside what pressure and friction exchange.
-constexpr double kRelative = 2e-3, kFloor = 1e-4;  // assumed (1e-3 to 5e-3; 1e-5 to 1e-3)
+// A solve goes on until it leaves Tolerances::share of what it was to remove, or its tolerance if
+// that is less; and no further than this share of its tolerance. Fluid driven through a long gap
+// needs it: the compression that drives it is small beside what pressure and friction exchange.
+constexpr double kFloor = 1e-4;  // assumed (1e-5 to 1e-3)
 // Density that lacks less than kOpening lies between particles that are in disorder, not in an
 // opening, and closes within this time. Velocities that filled it at once would let a fluid at rest
 // fall into it every step, and a squeezed one lose a tenth of its flux. Assumed (0.02 to 0.1; 0.2
 // to 1 s; 0.05 s leaves squeezed plates 8 % short of pressure).
 constexpr double kOpening = 0.05, kSettle_s = 0.3;
-constexpr int kDensityCap = 150;     // iterations, assumed (100 to 300)
-constexpr int kRateCap = 500;        // assumed (200 to 1000): a long gap of 150 spacings needs 200
-constexpr float kNoLimit = 1e30f;    // m^2/s^2
-constexpr int kLeastIterations = 2;  // Bender & Koschier 2015
+constexpr int kDensityCap = 150;  // iterations, assumed (100 to 300)
+constexpr int kRateCap = 500;     // assumed (200 to 1000): a long gap of 150 spacings needs 200
+// A pressure that passes as it is would never change: plane Poiseuille flow starts 3.6 % too slowly
+// then, and 2.1 % with two or more. Places have no such memory.
+constexpr int kLeastDensity = 1, kLeastRate = 2;
+constexpr float kNoLimit = 1e30f;  // m^2/s^2
 }  // namespace
 
 void Projection::resize(int n) {
@@ -49,75 +51,74 @@ void Projection::resize(int n) {
   rateK_.assign(n, 0.0);
 }
 
-void Projection::prepare(const Flow& f, std::span<const double> wallDrag) {
+void Projection::prepare(const Flow& f) {
   const Neighbours& nb = f.neighbours;
   const int n = f.count();
-  for (auto* a : {&mobility_, &freedom_, &along_, &diagonal_, &source_, &x_, &y_})
-    a->assign(n + 1, 0.f);
-  across_.assign(n, 0.f);
+  for (auto* a : {&mobility_, &freedom_, &along_, &diagonal_, &source_, &x_, &y_}) {
+    a->resize(n + 1);
+    (*a)[n] = 0;
+  }
+  across_.resize(n);
+  stress_.resize(n);
   wall_.assign(n + 1);
   acceleration_.assign(n + 1);
+  velocity_.assign(n + 1);
   for (std::size_t p = 0; p < nb.slot.size(); ++p)
     if (nb.slot[p] < 0) densityK_[p] = rateK_[p] = 0;
-  for (int i = 0; i < n; ++i) {
-    const Vec3f g = kWallMirror * f.walls[f.particle(i)].gradLambda.cast<float>();
-    wall_.x[i] = g.x();
-    wall_.y[i] = g.y();
-    wall_.z[i] = g.z();
-    if (const float square = g.squaredNorm(); square > 0) {
-      const float lambda =
-          std::clamp(static_cast<float>(f.walls[f.particle(i)].lambda), 0.f, kMostLambda);
-      along_[i] = lambda / (1 - lambda);
-      across_[i] = along_[i] / square;
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const WallSample& w = f.walls[f.particle(i)];
+      const Vec3f g = kWallMirror * w.gradLambda.cast<float>();
+      std::copy_n(g.data(), 3, wall_[i]);
+      along_[i] = across_[i] = 0;
+      if (const float square = g.squaredNorm(); square > 0) {
+        const float lambda = std::clamp(static_cast<float>(w.lambda), 0.f, kMostLambda);
+        along_[i] = lambda / (1 - lambda);
+        across_[i] = along_[i] / square;
+      }
+      mobility_[i] = 1;
     }
-    mobility_[i] = wallDrag.empty() ? 1.f : static_cast<float>(1 / (1 + wallDrag[f.particle(i)]));
-  }
-  for (int i = 0; i < n; ++i) freedom_[i] = mobility_[i] * (1 + along_[i]);
-  const DiagonalSweep sweep{f.lists(),      freedom_.data(), wall_.x.data(),
-                            wall_.y.data(), wall_.z.data(),  diagonal_.data()};
+  });
+}
+
+void Projection::brake(const Flow& f, std::span<const double> wallDrag) {
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      if (!wallDrag.empty()) mobility_[i] = static_cast<float>(1 / (1 + wallDrag[f.particle(i)]));
+      freedom_[i] = mobility_[i] * (1 + along_[i]);
+    }
+  });
+  const DiagonalSweep sweep{f.lists(), freedom_.data(), wall_.data(), diagonal_.data()};
   f.sweep([&](int begin, int end, int) { sweep.run(begin, end); });
 }
 
 /// Rate of rho* (1/s) into source_.
 void Projection::densityRate(const Flow& f, const std::vector<Vec3>& v) {
-  velocity_.assign(f.count() + 1);
   for (int i = 0; i < f.count(); ++i) velocity_.set(i, v[f.particle(i)]);
-  const RateSweep sweep{f.lists(), velocity_.x.data(), velocity_.y.data(), velocity_.z.data(),
-                        source_.data()};
+  const RateSweep sweep{f.lists(), velocity_.data(), source_.data()};
   f.sweep([&](int begin, int end, int) {
     sweep.run(begin, end);
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      source_[i] += static_cast<float>(v[p].dot(Vec3(wall_.x[i], wall_.y[i], wall_.z[i])) -
+      source_[i] += static_cast<float>(v[p].dot(wall_.at(i).cast<double>()) -
                                        kWallMirror * f.walls[p].flux_s);
     }
   });
 }
 
 // (-D a(k)) = source,  k >= 0.  source_ in 1/s^2.
-ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double tolerance,
-                                     std::vector<double>& warmK, std::vector<Vec3>& v) {
+ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int cap,
+                                     double tolerance, std::vector<double>& warmK) {
   ProjectionReport report;
   const int n = f.count();
   if (n == 0) return report;
   for (int i = 0; i < n; ++i)
     x_[i] = y_[i] = diagonal_[i] > 0 ? static_cast<float>(warmK[f.particle(i)]) : 0.f;
-  const PressureSweep pressure{f.lists(),
-                               y_.data(),
-                               mobility_.data(),
-                               wall_.x.data(),
-                               wall_.y.data(),
-                               wall_.z.data(),
-                               acceleration_.x.data(),
-                               acceleration_.y.data(),
-                               acceleration_.z.data()};
+  const PressureSweep pressure{f.lists(), y_.data(), mobility_.data(), wall_.data(),
+                               acceleration_.data()};
   StepSweep step{f.lists(),
-                 acceleration_.x.data(),
-                 acceleration_.y.data(),
-                 acceleration_.z.data(),
-                 wall_.x.data(),
-                 wall_.y.data(),
-                 wall_.z.data(),
+                 acceleration_.data(),
+                 wall_.data(),
                  source_.data(),
                  diagonal_.data(),
                  kRelaxation,
@@ -128,7 +129,7 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double
   std::vector<StepSweep::Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
   double asked = 0;  // mean size of what is to be removed
   for (int i = 0; i < n; ++i) asked += std::abs(source_[i]) / n * dt_s * dt_s;
-  tolerance = std::clamp(kRelative * asked, kFloor * tolerance, tolerance);
+  tolerance = std::clamp(tolerances.share * asked, kFloor * tolerance, tolerance);
   double theta = 1;
   for (report.iterations = 1;; ++report.iterations) {
     const double next = (1 + std::sqrt(1 + 4 * theta * theta)) / 2;
@@ -138,12 +139,9 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double
       pressure.run(b, e);
       for (int i = b; i < e; ++i) {
         if (along_[i] == 0) continue;
-        const Vec3f w(wall_.x[i], wall_.y[i], wall_.z[i]);
-        Vec3f a(acceleration_.x[i], acceleration_.y[i], acceleration_.z[i]);
-        a += along_[i] * a - across_[i] * a.dot(w) * w;
-        acceleration_.x[i] = a.x();
-        acceleration_.y[i] = a.y();
-        acceleration_.z[i] = a.z();
+        const Vec3f w = wall_.at(i), a = acceleration_.at(i);
+        const Vec3f more = along_[i] * a - across_[i] * a.dot(w) * w;
+        for (int k = 0; k < 3; ++k) acceleration_[i][k] += more[k];
       }
     });
     f.sweep([&](int b, int e, int c) { parts[c] = step.run(b, e); });
@@ -154,49 +152,51 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int cap, double
       all.most = std::max(all.most, p.most);
     }
     report.meanError = all.residual / n * dt_s * dt_s;
-    if (report.iterations > kLeastIterations && report.meanError < tolerance &&
+    if (report.iterations >= least && report.meanError < tolerance &&
         all.most * dt_s * dt_s < kWorstLeft)
       break;
     report.atCap = report.iterations >= cap;
     if (report.atCap) break;
     if (all.ahead < 0) theta = 1;
   }
-  accelerate(f, dt_s, v);
   for (int i = 0; i < n; ++i) warmK[f.particle(i)] = x_[i];
   return report;
 }
 
+void Projection::force(const Flow& f, float* stress) {
+  force_.resize(3 * f.count());
+  const GradientSweep gradient{f.lists(), x_.data(), force_.data(), f.neighbours.r.data(), stress};
+  f.sweep([&](int begin, int end, int) { gradient.run(begin, end); });
+}
+
 // v += dt a(x_)
 void Projection::accelerate(const Flow& f, double dt_s, std::vector<Vec3>& v) {
-  force_.resize(3 * f.count());
-  const GradientSweep gradient{f.lists(), x_.data(), force_.data()};
   f.sweep([&](int begin, int end, int) {
-    gradient.run(begin, end);
     for (int i = begin; i < end; ++i) {
-      const int p = f.particle(i);
-      const Vec3 w(wall_.x[i], wall_.y[i], wall_.z[i]);
+      const Vec3 w = wall_.at(i).cast<double>();
       Vec3 a = -Vec3(&force_[3 * i]) - static_cast<double>(x_[i]) * w;
       a += along_[i] * a - across_[i] * a.dot(w) * w;
-      v[p] += dt_s * mobility_[i] * a;
+      v[f.particle(i)] += dt_s * mobility_[i] * a;
     }
   });
 }
 
 void Projection::pushByLastPressure(const Flow& f, double dt_s, std::vector<Vec3>& v) {
-  for (int i = 0; i < f.count(); ++i)
-    x_[i] = diagonal_[i] > 0 ? static_cast<float>(rateK_[f.particle(i)]) : 0.f;
+  for (int i = 0; i < f.count(); ++i) x_[i] = static_cast<float>(rateK_[f.particle(i)]);
+  force(f);
   accelerate(f, dt_s, v);
 }
 
-void Projection::stress_m2s2(const Flow& f, std::vector<double>& stress) {
+void Projection::takeLastPressureBack(const Flow& f, double dt_s, std::vector<Vec3>& v) {
+  accelerate(f, -dt_s, v);
+}
+
+void Projection::stress_m2s2(const Flow& f, std::vector<double>& stress) const {
   stress.assign(densityK_.size(), 0.0);
-  for (int i = 0; i < f.count(); ++i) x_[i] = static_cast<float>(rateK_[f.particle(i)]);
-  const StressSweep sweep{f.lists(), f.neighbours.r.data(), x_.data(), source_.data()};
-  f.sweep([&](int begin, int end, int) {
-    sweep.run(begin, end);
-    for (int i = begin; i < end; ++i)
-      stress[f.particle(i)] = source_[i] + x_[i] * f.walls[f.particle(i)].lambdaSlope;
-  });
+  for (int i = 0; i < f.count(); ++i) {
+    const int p = f.particle(i);
+    stress[p] = stress_[i] + rateK_[p] * f.walls[p].lambdaSlope;
+  }
 }
 
 // What compresses all of a full room alike has no solution and no meaning.
@@ -218,7 +218,10 @@ ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<dou
     source_[i] = static_cast<float>((source_[i] - open) / dt_s);
   }
   takeMeanOff(f.count());
-  return project(f, dt_s, kRateCap, tolerances.rate, rateK_, v);
+  const ProjectionReport report = project(f, dt_s, kLeastRate, kRateCap, tolerances.rate, rateK_);
+  force(f, stress_.data());
+  accelerate(f, dt_s, v);
+  return report;
 }
 
 ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<double>& density,
@@ -228,6 +231,10 @@ ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<do
   for (int i = 0; i < f.count(); ++i)
     source_[i] = static_cast<float>((source_[i] + (density[f.particle(i)] - 1) / within_s) / dt_s);
   takeMeanOff(f.count());
-  return project(f, dt_s, kDensityCap, tolerances.density, densityK_, v);
+  const ProjectionReport report =
+      project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, densityK_);
+  force(f);
+  accelerate(f, dt_s, v);
+  return report;
 }
 }  // namespace swallowclip::bolus

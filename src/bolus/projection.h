@@ -19,9 +19,9 @@
 
 namespace swallowclip::bolus {
 
-inline constexpr int kSweepChunk = 256;  ///< slots per work item of a neighbour sweep
-/// Sweeps over fewer slots than this take less time than waking a thread, assumed (1000 to 3000).
-inline constexpr int kSweepAlone = 1500;
+inline constexpr int kSweepChunk = 64;  ///< slots per work item of a neighbour sweep
+/// Sweeps over fewer slots than this take less time than waking a thread, assumed (100 to 300).
+inline constexpr int kSweepAlone = 200;
 
 /// What one step works on. Arrays are [particle] unless they say slot.
 struct Flow {
@@ -29,10 +29,7 @@ struct Flow {
   const std::vector<WallSample>& walls;
   ThreadPool& pool;
 
-  PairLists lists() const {
-    return {neighbours.start.data(), neighbours.index.data(), neighbours.gx.data(),
-            neighbours.gy.data(), neighbours.gz.data()};
-  }
+  PairLists lists() const { return neighbours.lists(); }
   int count() const { return neighbours.count; }
   /// body(begin, end, chunk) over the slots.
   void sweep(const std::function<void(int, int, int)>& body) const {
@@ -44,6 +41,7 @@ struct Flow {
 struct Tolerances {
   double density = 1e-4;  ///< mean compression left after a step, assumed (1e-5 to 1e-3)
   double rate = 3e-4;     ///< mean compression within a step, assumed
+  double share = 2e-3;    ///< of what is to be removed, may be left, assumed (1e-3 to 5e-3); 1: any
 };
 
 struct ProjectionReport {
@@ -54,11 +52,13 @@ struct ProjectionReport {
 
 class Projection {
  public:
+  /// Before anything else of a step.
+  void prepare(const Flow& flow);
   /// Before the projections of a step. `wallDrag` ([particle], dt times the rate at which walls
   /// brake it; empty: none) lets pressure move a particle only as far as the walls' friction allows
   /// within the step: a_i / (1 + drag_i), the implicit Brinkman term. Without it a narrow slit is
   /// squeezed out as if the fluid had no viscosity.
-  void prepare(const Flow& flow, std::span<const double> wallDrag);
+  void brake(const Flow& flow, std::span<const double> wallDrag);
   /// Removes compression rate where rho* would pass one; `velocities` (m/s) in and out.
   ProjectionReport divergenceFree(const Flow& flow, const std::vector<double>& densityRatio,
                                   double dt_s, std::vector<Vec3>& velocities);
@@ -66,16 +66,17 @@ class Projection {
   ProjectionReport constantDensity(const Flow& flow, const std::vector<double>& densityRatio,
                                    double dt_s, std::vector<Vec3>& velocities);
   /// Adds dt times the acceleration by the pressure of the last divergenceFree to velocities. Put
-  /// in before friction and taken out (negative dt) after it, it lets friction act on forces that
-  /// are in balance; divergenceFree then finds the whole pressure anew.
+  /// in before friction and taken out after it, it lets friction act on forces that are in balance;
+  /// divergenceFree then finds the whole pressure anew.
   void pushByLastPressure(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
+  void takeLastPressureBack(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
   void resize(int particles);
 
   /// Force per area (and rho0) that the velocities' projection of the last step transmits, m^2/s^2,
   /// [particle]: the mean normal stress sum V (k_i + k_j)/2 r |gradW| / 3 of the pairs (Irving &
   /// Kirkwood 1950). k itself is a multiplier: among disordered particles, where gradW of a linear
   /// field comes out 10 % small, it is so much larger, and it zigzags from layer to layer.
-  void stress_m2s2(const Flow& flow, std::vector<double>& stress);
+  void stress_m2s2(const Flow& flow, std::vector<double>& stress) const;
 
   Tolerances tolerances;
   bool full = false;  ///< BolusDef::full
@@ -85,8 +86,9 @@ class Projection {
   std::vector<double>& rateWarm() { return rateK_; }
 
  private:
-  ProjectionReport project(const Flow& flow, double dt_s, int cap, double tolerance,
-                           std::vector<double>& warmK, std::vector<Vec3>& velocities);
+  ProjectionReport project(const Flow& flow, double dt_s, int least, int cap, double tolerance,
+                           std::vector<double>& warmK);
+  void force(const Flow& flow, float* stress = nullptr);
   void accelerate(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
   void takeMeanOff(int count);
   void densityRate(const Flow& flow, const std::vector<Vec3>& velocities);
@@ -96,6 +98,7 @@ class Projection {
   std::vector<float> along_, across_;  // how much farther particles move along their wall
   std::vector<float> mobility_, freedom_, diagonal_, source_, x_, y_;
   Floats3 wall_, acceleration_, velocity_;
-  std::vector<double> force_;  // [slot][3]
+  std::vector<double> force_;  // [slot][3], of x_
+  std::vector<float> stress_;  // [slot]
 };
 }  // namespace swallowclip::bolus

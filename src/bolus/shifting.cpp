@@ -2,6 +2,7 @@
 #include "bolus/shifting.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bolus/viscosity.h"
 
@@ -19,23 +20,27 @@ constexpr double kFullDensity = 0.97;  // of all neighbours: no free surface nea
 
 void Shifting::shift(const Flow& f, const std::vector<double>& density, double spacing_m,
                      const std::vector<Vec3>& v, std::vector<Vec3>& moving) {
-  const Neighbours& nb = f.neighbours;
-  slope_.assign(f.count(), Mat3::Zero());
-  shift_.assign(f.count(), Vec3::Zero());
+  const int n = f.count();
+  slope_.assign(n, Mat3::Zero());
+  shift_.assign(n, Vec3::Zero());
+  density_.assign(n + 1, INFINITY);
+  least_.resize(n);
+  velocity_.assign(n + 1);
   moving = v;
+  for (int i = 0; i < n; ++i) {
+    density_[i] = static_cast<float>(density[f.particle(i)]);
+    velocity_.set(i, v[f.particle(i)]);
+  }
+  const LeastSweep least{f.lists(), density_.data(), least_.data()};
+  const SlopeSweep slopes{f.lists(), velocity_.data()};
   f.sweep([&](int begin, int end, int) {
+    least.run(begin, end);
     for (int i = begin; i < end; ++i) {
+      if (least_[i] < kFullDensity) continue;
       const int p = f.particle(i);
-      Vec3 gradient = f.walls[p].gradLambda;
-      double least = density[p];
-      for (int k = nb.start[i]; k < nb.start[i + 1] && nb.index[k] < nb.count; ++k) {
-        least = std::min(least, density[nb.id[nb.index[k]]]);
-        gradient += Vec3(nb.gx[k], nb.gy[k], nb.gz[k]);
-      }
-      if (least < kFullDensity) continue;
-      gradient *= spacing_m;
+      Vec3 gradient = spacing_m * (f.walls[p].gradLambda + f.neighbours.sumG.at(i).cast<double>());
       gradient *= kMostGradient / std::max(kMostGradient, gradient.norm());
-      slope_[i] = velocityGradient_s(f, v, i);
+      slope_[i] = velocityGradient_s(f, slopes, v[p], i);
       const double strength = f.walls[p].lambda > 0 ? kStrengthAtWall : kStrength;
       shift_[i] = -strength * spacing_m * shearRate_s(slope_[i]) * gradient;
       moving[p] += shift_[i];

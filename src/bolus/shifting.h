@@ -22,7 +22,9 @@ class Shifting {
              std::vector<Vec3>& velocities);
 
  private:
-  std::vector<Mat3> slope_;            // [slot], 1/s; zero where nothing is shifted
-  std::vector<Vec3> shift_, carried_;  // [slot], m/s
+  std::vector<float> density_, least_;  // [slot + 1]; [slot], of it and its neighbours
+  Floats3 velocity_;                    // [slot + 1]
+  std::vector<Mat3> slope_;             // [slot], 1/s; zero where nothing is shifted
+  std::vector<Vec3> shift_, carried_;   // [slot], m/s
 };
 }  // namespace swallowclip::bolus

@@ -208,6 +208,7 @@ void Solver::Impl::finishFrame() {
   for (std::size_t i = 0; i < active.size(); ++i)
     escapedNow += particles.state[i] != State::swallowed && escaped(particles.positions[i]);
   stats.escaped = std::max(stats.escaped, escapedNow);
+  findNeighbours();  // here, so that a run that goes on from a checkpoint has the same lists
 }
 
 Result<StepReport> Solver::advanceTo(double t_s) {

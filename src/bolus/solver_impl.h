@@ -44,6 +44,7 @@ struct Solver::Impl {
   void evaluateWalls(double t_s);
   void shutBranches(double t_s);
   void wrapPeriods();
+  void findNeighbours();
   bool escaped(const Vec3& p) const;
   int pushInside();
   void keepOutOfSlits(int i);
@@ -89,6 +90,7 @@ struct Solver::Impl {
   std::vector<Vec3> contactsAt, wallsBefore;   // places where contacts were last looked for; walls
   bool wallsStood = false;                     // since the last step
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
+  std::vector<int> lastNearest;                // [particle] triangle, only a guess
   std::vector<int> takenUp;                    // films that became fluid just now
   mutable std::vector<Neighbours::Near> nearFilm;
   std::vector<std::uint8_t> active;  // takes part in the pressure solve

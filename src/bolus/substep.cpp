@@ -26,6 +26,7 @@ constexpr double kShortestRetry = 1.0 / 16;  // of a step that is taken again, a
 // that share of a spacing a particle alone finds no way out at any speed, and no bolus is seen to
 // move half as fast. Both assumed (2 to 3 m/s, 0.6 to 0.8 spacings).
 constexpr double kShotOut_ms = 2.5, kShotOutGap = 0.75;
+constexpr int kMoveChunk = 64;          // particles per work item
 constexpr double kFilmThickness = 0.1;  // spacings, assumed (0.05 to 0.3): how thick a film drains
 
 // Nusselt (1916): mean speed of a film of thickness h down a wall is rho g h^2 / (3 eta); here per
@@ -66,10 +67,11 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   held.assign(n, {});
   contactsAt.assign(n, Vec3::Constant(INFINITY));
   active.assign(n, 1);
+  lastNearest.assign(n, -1);
   projection.resize(static_cast<int>(n));
   wcsph.start();
   lastStep_s = 0;
-  projection.tolerances = {def.densityTolerance, def.rateTolerance};
+  projection.tolerances = {def.densityTolerance, def.rateTolerance, def.solveShare};
   projection.full = def.full;
   stats = {};
   errorSum = errorCount = aboveTenCount = infeasible_s = 0;
@@ -134,7 +136,7 @@ int Solver::Impl::clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const 
 void Solver::Impl::project(double dt_s, Substep& report) {
   std::vector<Vec3>& v = particles.velocities;
   const Flow flow{neighbours, walls, pool};
-  projection.prepare(flow, {});
+  projection.prepare(flow);
   for (std::size_t i = 0; i < v.size(); ++i)
     if (active[i]) v[i] += dt_s * def.gravity_ms2;
   // Friction acts on gravity and the last pressure together (incremental projection, Guermond et
@@ -146,8 +148,11 @@ void Solver::Impl::project(double dt_s, Substep& report) {
                                    .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas},
                                           dt_s, kernel.support_m(), v)
                                    .iterations;
-  if (settlingViscosity_Pas == 0) projection.prepare(flow, viscosity.wallDrag());
-  projection.pushByLastPressure(flow, -dt_s, v);
+  if (settlingViscosity_Pas == 0)
+    projection.brake(flow, viscosity.wallDrag());
+  else
+    projection.brake(flow, {});
+  projection.takeLastPressureBack(flow, dt_s, v);
   report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
   shifting.shift(flow, particles.densityRatio, def.spacing_m, v, moving);
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
@@ -221,22 +226,31 @@ void Solver::Impl::move(double dt_s, Substep& report) {
   std::vector<Vec3>& v = particles.velocities;
   leaveInSlits(dt_s);
   report.clamped = clampSpeeds(dt_s, v) + clampSpeeds(dt_s, moving);
-  carried.resize(v.size());
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    if (particles.state[i] == State::swallowed) continue;
-    const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
-    carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
-    if (particles.state[i] == State::film) v[i] = moving[i] = filmVelocity_ms(static_cast<int>(i));
-    clampVelocity(contacts[i], def.spacing_m, dt_s, v[i]);
-    clampVelocity(contacts[i], def.spacing_m, dt_s, moving[i]);
-    if (!v[i].allFinite() ||
-        !moving[i].allFinite()) {  // said by checkStep; until then it must not get into the grids
-      v[i].setZero();
-      moving[i].setZero();
-      report.broken = true;
+  const int n = static_cast<int>(v.size());
+  carried.resize(n);
+  std::vector<std::pair<double, bool>> parts((n + kMoveChunk - 1) / kMoveChunk);
+  pool.forChunks(n, kMoveChunk, [&](int begin, int end, int chunk) {
+    auto& [fastest, broken] = parts[chunk];
+    for (int i = begin; i < end; ++i) {
+      if (particles.state[i] == State::swallowed) continue;
+      const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
+      carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
+      if (particles.state[i] == State::film) v[i] = moving[i] = filmVelocity_ms(i);
+      clampVelocity(contacts[i], def.spacing_m, dt_s, v[i]);
+      clampVelocity(contacts[i], def.spacing_m, dt_s, moving[i]);
+      if (!v[i].allFinite() ||
+          !moving[i].allFinite()) {  // said by checkStep; until then it must not get into the grids
+        v[i].setZero();
+        moving[i].setZero();
+        broken = true;
+      }
+      fastest = std::max(fastest, v[i].norm());
+      particles.positions[i] += dt_s * moving[i];
     }
-    report.maxSpeed_ms = std::max(report.maxSpeed_ms, v[i].norm());
-    particles.positions[i] += dt_s * moving[i];
+  });
+  for (const auto& [fastest, broken] : parts) {
+    report.maxSpeed_ms = std::max(report.maxSpeed_ms, fastest);
+    report.broken = report.broken || broken;
   }
   report.rescued = meetWalls(time_s + (frozen ? 0 : dt_s));
 }

@@ -15,17 +15,30 @@ SC_CLONES void pressure(const PressureSweep& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     const F8 own = all(s.k[i]);
     F8 x = all(0), y = all(0), z = all(0);
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+    for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
       const F8 k = own + gather(s.k, s.pairs.index + e);
       x += k * load(s.pairs.gx + e);
       y += k * load(s.pairs.gy + e);
       z += k * load(s.pairs.gz + e);
     }
-    const float wall = s.k[i], m = -s.mobility[i];
-    s.ax[i] = m * (sum(x) + wall * s.wallX[i]);
-    s.ay[i] = m * (sum(y) + wall * s.wallY[i]);
-    s.az[i] = m * (sum(z) + wall * s.wallZ[i]);
+    const float k = s.k[i], m = -s.mobility[i];
+    const float* wall = s.wall + 4 * i;
+    float* a = s.a + 4 * i;
+    a[0] = m * (sum(x) + k * wall[0]);
+    a[1] = m * (sum(y) + k * wall[1]);
+    a[2] = m * (sum(z) + k * wall[2]);
   }
+}
+
+/// sum (v_i - v_j).g_ij
+SC_INLINE float rateAt(const PairLists& p, const float* v, int i) {
+  const F8 x = all(v[4 * i]), y = all(v[4 * i + 1]), z = all(v[4 * i + 2]);
+  F8 total = all(0);
+  for (int e = p.start[i]; e < p.stop[i]; e += kLanes) {
+    const F8x3 o = gather3(v, p.index + e);
+    total += (x - o.x) * load(p.gx + e) + (y - o.y) * load(p.gy + e) + (z - o.z) * load(p.gz + e);
+  }
+  return sum(total);
 }
 
 SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
@@ -35,16 +48,9 @@ SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
       s.x[i] = s.y[i] = 0;
       continue;
     }
-    const F8 x = all(s.ax[i]), y = all(s.ay[i]), z = all(s.az[i]);
-    F8 rate = all(0);
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
-      const int* at = s.pairs.index + e;
-      rate += (x - gather(s.ax, at)) * load(s.pairs.gx + e) +
-              (y - gather(s.ay, at)) * load(s.pairs.gy + e) +
-              (z - gather(s.az, at)) * load(s.pairs.gz + e);
-    }
-    const float wall = s.ax[i] * s.wallX[i] + s.ay[i] * s.wallY[i] + s.az[i] * s.wallZ[i];
-    const float residual = s.source[i] + (sum(rate) + wall);
+    const float *a = s.a + 4 * i, *w = s.wall + 4 * i;
+    const float wall = a[0] * w[0] + a[1] * w[1] + a[2] * w[2];
+    const float residual = s.source[i] + (rateAt(s.pairs, s.a, i) + wall);
     const float next = std::max(s.least, s.y[i] + s.relax * residual / s.diagonal[i]);
     // too much pressure is as wrong as too little, unless it is zero already
     const double left = std::abs(next - s.y[i]) * s.diagonal[i] / s.relax;
@@ -60,21 +66,21 @@ SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
 SC_CLONES double viscosity(const ViscositySweep& s, int begin, int end) {
   double product = 0;
   for (int i = begin; i < end; ++i) {
-    const F8 x = all(s.vx[i]), y = all(s.vy[i]), z = all(s.vz[i]);
+    const float* v = s.v + 4 * i;
+    const F8 x = all(v[0]), y = all(v[1]), z = all(v[2]);
     F8 ox = all(0), oy = all(0), oz = all(0);
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
-      const int* at = s.pairs.index + e;
+    for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
+      const F8x3 o = gather3(s.v, s.pairs.index + e);
       const F8 c = load(s.c + e);
-      ox += c * (x - gather(s.vx, at));
-      oy += c * (y - gather(s.vy, at));
-      oz += c * (z - gather(s.vz, at));
+      ox += c * (x - o.x);
+      oy += c * (y - o.y);
+      oz += c * (z - o.z);
     }
-    const float own = s.own[i];
-    s.outX[i] = own * s.vx[i] + sum(ox);
-    s.outY[i] = own * s.vy[i] + sum(oy);
-    s.outZ[i] = own * s.vz[i] + sum(oz);
-    product += static_cast<double>(s.vx[i]) * s.outX[i] + static_cast<double>(s.vy[i]) * s.outY[i] +
-               static_cast<double>(s.vz[i]) * s.outZ[i];
+    float* out = s.out + 4 * i;
+    out[0] = s.own[i] * v[0] + sum(ox);
+    out[1] = s.own[i] * v[1] + sum(oy);
+    out[2] = s.own[i] * v[2] + sum(oz);
+    for (int a = 0; a < 3; ++a) product += static_cast<double>(v[a]) * out[a];
   }
   return product;
 }
@@ -82,51 +88,65 @@ SC_CLONES double viscosity(const ViscositySweep& s, int begin, int end) {
 SC_CLONES void diagonalOf(const DiagonalSweep& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     F8 x = all(0), y = all(0), z = all(0), squares = all(0);
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+    for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
       const F8 gx = load(s.pairs.gx + e), gy = load(s.pairs.gy + e), gz = load(s.pairs.gz + e);
       x += gx;
       y += gy;
       z += gz;
       squares += gather(s.mobility, s.pairs.index + e) * (gx * gx + gy * gy + gz * gz);
     }
-    const float ox = sum(x) + s.wallX[i], oy = sum(y) + s.wallY[i], oz = sum(z) + s.wallZ[i];
+    const float* wall = s.wall + 4 * i;
+    const float ox = sum(x) + wall[0], oy = sum(y) + wall[1], oz = sum(z) + wall[2];
     s.diagonal[i] = s.mobility[i] * (ox * ox + oy * oy + oz * oz) + sum(squares);
   }
 }
 
 SC_CLONES void rateOf(const RateSweep& s, int begin, int end) {
-  for (int i = begin; i < end; ++i) {
-    const F8 x = all(s.vx[i]), y = all(s.vy[i]), z = all(s.vz[i]);
-    F8 total = all(0);
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
-      const int* at = s.pairs.index + e;
-      total += (x - gather(s.vx, at)) * load(s.pairs.gx + e) +
-               (y - gather(s.vy, at)) * load(s.pairs.gy + e) +
-               (z - gather(s.vz, at)) * load(s.pairs.gz + e);
-    }
-    s.rate[i] = sum(total);
-  }
+  for (int i = begin; i < end; ++i) s.rate[i] = rateAt(s.pairs, s.v, i);
 }
 
 SC_CLONES void gradient(const GradientSweep& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     const F8 own = all(s.k[i]);
-    D8 x{}, y{}, z{};
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+    D8 x, y, z;
+    F8 stress = all(0);
+    for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
       const F8 k = own + gather(s.k, s.pairs.index + e);
-      x += wide(k * load(s.pairs.gx + e));
-      y += wide(k * load(s.pairs.gy + e));
-      z += wide(k * load(s.pairs.gz + e));
+      const F8 gx = load(s.pairs.gx + e), gy = load(s.pairs.gy + e), gz = load(s.pairs.gz + e);
+      x.add(k * gx);
+      y.add(k * gy);
+      z.add(k * gz);
+      if (s.stress) stress += k * root(gx * gx + gy * gy + gz * gz) * load(s.r + e);
     }
     s.out[3 * i] = sum(x);
     s.out[3 * i + 1] = sum(y);
     s.out[3 * i + 2] = sum(z);
+    if (s.stress) s.stress[i] = sum(stress) / 6;
   }
 }
 
-SC_INLINE F8 steepness(const PairLists& p, int e) {
-  const F8 x = load(p.gx + e), y = load(p.gy + e), z = load(p.gz + e);
-  return root(x * x + y * y + z * z);
+SC_CLONES void slope(const SlopeSweep& s, int i, float* out) {
+  const F8 vx = all(s.v[4 * i]), vy = all(s.v[4 * i + 1]), vz = all(s.v[4 * i + 2]);
+  F8 t[9] = {};
+  for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
+    const F8x3 o = gather3(s.v, s.pairs.index + e);
+    const F8 d[3] = {o.x - vx, o.y - vy, o.z - vz};
+    const F8 g[3] = {load(s.pairs.gx + e), load(s.pairs.gy + e), load(s.pairs.gz + e)};
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) t[3 * a + b] += d[a] * g[b];
+  }
+  for (int k = 0; k < 9; ++k) out[k] = sum(t[k]);
+}
+
+SC_CLONES void least(const LeastSweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    F8 l = all(s.value[i]);
+    for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes)
+      l = smallest(l, gather(s.value, s.pairs.index + e));
+    float one = l[0];
+    for (int k = 1; k < kLanes; ++k) one = std::min(one, static_cast<float>(l[k]));
+    s.out[i] = one;
+  }
 }
 
 struct Tensor8 {
@@ -138,20 +158,19 @@ SC_INLINE F8 twice(const Tensor8& t, F8 x, F8 y, F8 z) {  // n.T.n
 }
 
 SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
-  const auto& b = s.evenness->of;
   for (int i = begin; i < end; ++i) {
     const F8 mu = all(s.viscosity[i]);
-    const Tensor8 own{all(b[0][i]), all(b[1][i]), all(b[2][i]),
-                      all(b[3][i]), all(b[4][i]), all(b[5][i])};
+    const float* b = s.evenness + 8 * i;
+    const Tensor8 own{all(b[0]), all(b[1]), all(b[2]), all(b[4]), all(b[5]), all(b[6])};
     F8 total = all(0);
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
+    for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
       const int* at = s.pairs.index + e;
       const F8 other = gather(s.viscosity, at), r = load(s.r + e);
       const F8 x = load(s.pairs.gx + e), y = load(s.pairs.gy + e), z = load(s.pairs.gz + e);
       const F8 square = x * x + y * y + z * z;
-      const Tensor8 both2{own.xx + gather(b[0].data(), at), own.yy + gather(b[1].data(), at),
-                          own.zz + gather(b[2].data(), at), own.xy + gather(b[3].data(), at),
-                          own.xz + gather(b[4].data(), at), own.yz + gather(b[5].data(), at)};
+      const F8x3 straight = gather3<8>(s.evenness, at), mixed = gather3<8>(s.evenness + 4, at);
+      const Tensor8 both2{own.xx + straight.x, own.yy + straight.y, own.zz + straight.z,
+                          own.xy + mixed.x,    own.xz + mixed.y,    own.yz + mixed.z};
       const F8 even =
           largest(all(2 * s.leastEven), twice(both2, x, y, z) / largest(square, all(1e-30f)));
       // harmonic: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
@@ -164,49 +183,17 @@ SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
   }
 }
 
-SC_CLONES void momentOf(const MomentSweep& s, int begin, int end) {
-  for (int i = begin; i < end; ++i) {
-    Tensor8 t{all(0), all(0), all(0), all(0), all(0), all(0)};
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
-      const F8 x = load(s.pairs.gx + e), y = load(s.pairs.gy + e), z = load(s.pairs.gz + e);
-      const F8 w = load(s.r + e) / largest(root(x * x + y * y + z * z), all(1e-30f));
-      t.xx += w * x * x;
-      t.yy += w * y * y;
-      t.zz += w * z * z;
-      t.xy += w * x * y;
-      t.xz += w * x * z;
-      t.yz += w * y * z;
-    }
-    auto& m = s.moment->of;
-    m[0][i] += sum(t.xx);
-    m[1][i] += sum(t.yy);
-    m[2][i] += sum(t.zz);
-    m[3][i] += sum(t.xy);
-    m[4][i] += sum(t.xz);
-    m[5][i] += sum(t.yz);
-  }
-}
-
-SC_CLONES void stress(const StressSweep& s, int begin, int end) {
-  for (int i = begin; i < end; ++i) {
-    const F8 own = all(s.k[i]);
-    F8 total = all(0);
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes)
-      total += (own + gather(s.k, s.pairs.index + e)) * steepness(s.pairs, e) * load(s.r + e);
-    s.out[i] = sum(total) / 6;
-  }
-}
-
 SC_CLONES void drag(const DragSweep& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
-    const F8 vx = all(s.vx[i]), vy = all(s.vy[i]), vz = all(s.vz[i]);
-    D8 x{}, y{}, z{};
-    for (int e = s.pairs.start[i]; e < s.pairs.start[i + 1]; e += kLanes) {
-      const int* at = s.pairs.index + e;
+    const float* v = s.v + 4 * i;
+    const F8 vx = all(v[0]), vy = all(v[1]), vz = all(v[2]);
+    D8 x, y, z;
+    for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
+      const F8x3 o = gather3(s.v, s.pairs.index + e);
       const F8 c = load(s.c + e);
-      x += wide(c * (vx - gather(s.vx, at)));
-      y += wide(c * (vy - gather(s.vy, at)));
-      z += wide(c * (vz - gather(s.vz, at)));
+      x.add(c * (vx - o.x));
+      y.add(c * (vy - o.y));
+      z.add(c * (vz - o.z));
     }
     s.out[3 * i] = sum(x);
     s.out[3 * i + 1] = sum(y);
@@ -236,11 +223,11 @@ void GradientSweep::run(int begin, int end) const {
 void PairViscositySweep::run(int begin, int end) const {
   pairViscosity(*this, begin, end);
 }
-void MomentSweep::run(int begin, int end) const {
-  momentOf(*this, begin, end);
+void SlopeSweep::run(int slot, float* out9) const {
+  slope(*this, slot, out9);
 }
-void StressSweep::run(int begin, int end) const {
-  stress(*this, begin, end);
+void LeastSweep::run(int begin, int end) const {
+  least(*this, begin, end);
 }
 void DragSweep::run(int begin, int end) const {
   drag(*this, begin, end);

@@ -11,28 +11,29 @@
 namespace swallowclip::bolus {
 
 struct PairLists {
-  const int *start, *index;
+  const int *start, *stop, *index;
   const float *gx, *gy, *gz;  ///< V gradW, 1/m
 };
 
-/// Three components, flat.
+/// Vectors of three, each in four floats, so that one is fetched at once.
 struct Floats3 {
-  std::vector<float> x, y, z;
-  void assign(std::size_t n) {
-    for (auto *c : {&x, &y, &z}) c->assign(n, 0.f);
-  }
+  std::vector<float> of;
+  void assign(std::size_t n) { of.assign(4 * n, 0.f); }
+  const float *data() const { return of.data(); }
+  float *data() { return of.data(); }
+  float *operator[](int i) { return &of[4 * static_cast<std::size_t>(i)]; }
+  const float *operator[](int i) const { return &of[4 * static_cast<std::size_t>(i)]; }
   void set(int i, const Vec3 &v) {
-    x[i] = static_cast<float>(v.x());
-    y[i] = static_cast<float>(v.y());
-    z[i] = static_cast<float>(v.z());
+    for (int a = 0; a < 3; ++a) (*this)[i][a] = static_cast<float>(v[a]);
   }
+  Vec3f at(int i) const { return Vec3f((*this)[i]); }
 };
 
 /// a_i = -mobility_i (sum (k_i + k_j) g_ij + k_i wall_i)
 struct PressureSweep {
   PairLists pairs;
-  const float *k, *mobility, *wallX, *wallY, *wallZ;
-  float *ax, *ay, *az;
+  const float *k, *mobility, *wall;  ///< wall: [slot][4], as all vectors
+  float *a;
   void run(int begin, int end) const;
 };
 
@@ -40,7 +41,7 @@ struct PressureSweep {
 /// x' = max(least, y + relax residual / diagonal),  y' = max(least, x' + momentum (x' - x)).
 struct StepSweep {
   PairLists pairs;
-  const float *ax, *ay, *az, *wallX, *wallY, *wallZ, *source;
+  const float *a, *wall, *source;
   const float *diagonal;  ///< 0: takes no part
   float relax, momentum;
   float least;   ///< pressure: 0 at a free surface
@@ -56,14 +57,14 @@ struct StepSweep {
 /// out_i = own_i v_i + sum c_ij (v_i - v_j); returns sum v.out.
 struct ViscositySweep {
   PairLists pairs;
-  const float *c, *own, *vx, *vy, *vz;
-  float *outX, *outY, *outZ;
+  const float *c, *own, *v;
+  float *out;
   double run(int begin, int end) const;
 };
 /// diagonal_i = mobility_i |sum g_ij + wall_i|^2 + sum mobility_j g_ij^2
 struct DiagonalSweep {
   PairLists pairs;
-  const float *mobility, *wallX, *wallY, *wallZ;
+  const float *mobility, *wall;
   float *diagonal;
   void run(int begin, int end) const;
 };
@@ -71,25 +72,29 @@ struct DiagonalSweep {
 /// rate_i = sum (v_i - v_j).g_ij
 struct RateSweep {
   PairLists pairs;
-  const float *vx, *vy, *vz;
+  const float *v;
   float *rate;
   void run(int begin, int end) const;
 };
 
-/// out_i = sum (k_i + k_j) g_ij, summed in double from terms that are antisymmetric to the bit.
+/// out_i = sum (k_i + k_j) g_ij, summed in double from terms that are antisymmetric to the bit; and
+/// where asked, stress_i = sum (k_i + k_j) / 2 r |g_ij| / 3.
 struct GradientSweep {
   PairLists pairs;
   const float *k;
-  double *out;  ///< [slot][3]
+  double *out;              ///< [slot][3]
+  const float *r;           ///< [pair]
+  float *stress = nullptr;  ///< null: not asked
   void run(int begin, int end) const;
 };
 
-/// A symmetric tensor per slot: xx yy zz xy xz yz.
+/// A symmetric tensor per slot: xx yy zz - xy xz yz -, so that one is fetched at once.
 struct Tensors {
-  std::vector<float> of[6];
-  void assign(int n, float diagonal) {
-    for (int k = 0; k < 6; ++k) of[k].assign(n, k < 3 ? diagonal : 0.f);
-  }
+  std::vector<float> of;
+  static constexpr int kAt[6] = {0, 1, 2, 4, 5, 6};
+  void assign(int n) { of.assign(8 * static_cast<std::size_t>(n), 0.f); }
+  float *operator[](int i) { return &of[8 * static_cast<std::size_t>(i)]; }
+  const float *operator[](int i) const { return &of[8 * static_cast<std::size_t>(i)]; }
 };
 
 /// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu harmonic and at least leastPair, even =
@@ -97,24 +102,23 @@ struct Tensors {
 struct PairViscositySweep {
   PairLists pairs;
   const float *r, *viscosity;
-  const Tensors *evenness;
+  const float *evenness;  ///< Tensors
   float scale, leastPair, eta2, leastEven;
   float *c, *diagonal;
   void run(int begin, int end) const;
 };
 
-/// Adds sum r |g| n n (n along the pair) to a tensor of each slot.
-struct MomentSweep {
+/// out_i = sum (v_j - v_i) g_ij^T, row by row.
+struct SlopeSweep {
   PairLists pairs;
-  const float *r;
-  Tensors *moment;
-  void run(int begin, int end) const;
+  const float *v;
+  void run(int slot, float *out9) const;
 };
 
-/// out_i = sum (k_i + k_j) / 2 r |g_ij| / 3
-struct StressSweep {
+/// The least value of a slot and its neighbours.
+struct LeastSweep {
   PairLists pairs;
-  const float *r, *k;
+  const float *value;  ///< padding: not less than any
   float *out;
   void run(int begin, int end) const;
 };
@@ -122,7 +126,7 @@ struct StressSweep {
 /// out_i = sum c_ij (v_i - v_j), summed as GradientSweep.
 struct DragSweep {
   PairLists pairs;
-  const float *c, *vx, *vy, *vz;
+  const float *c, *v;
   double *out;  ///< [slot][3]
   void run(int begin, int end) const;
 };

@@ -25,24 +25,23 @@ constexpr double kExplicitShare = 0.0625;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
 
-Mat3 velocityGradient_s(const Flow& f, const std::vector<Vec3>& v, int i) {
-  const Neighbours& nb = f.neighbours;
-  const int p = f.particle(i);
-  Mat3 gradient = Mat3::Zero(), moment = Mat3::Zero();
-  for (int k = nb.start[i]; k < nb.start[i + 1] && nb.index[k] < nb.count; ++k) {
-    const Vec3 g(nb.gx[k], nb.gy[k], nb.gz[k]);
-    gradient += (v[nb.id[nb.index[k]]] - v[p]) * g.transpose();
-    if (const double steep = g.norm(); steep > 0) moment += nb.r[k] / steep * g * g.transpose();
-  }
-  const WallSample& w = f.walls[p];
+Mat3 velocityGradient_s(const Flow& f, const SlopeSweep& slopes, const Vec3& v, int i) {
+  const WallSample& w = f.walls[f.particle(i)];
+  float sums[9];
+  slopes.run(i, sums);
+  Mat3 gradient =
+      Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(sums).cast<double>();
+  const float* t = f.neighbours.moment[i];
+  Mat3 moment;
+  moment << t[0], t[4], t[5], t[4], t[1], t[6], t[5], t[6], t[2];
   const double steep = w.gradLambda.norm();
   // Outside, the velocity goes on linearly through the wall's: (v_wall - v) / distance along n. Of
   // such a gradient the missing part of the sum, int_out (y - x).n dW/dn dV, is by parts the share
   // lambda of the kernel plus distance times grad lambda.
   if (w.friction > 0 && w.area > 0 && steep > 0) {
     const double share = std::min(w.lambda + steep * w.area / w.friction, 1.0);
-    gradient += share / (w.area * steep) * (w.frictionVelocity - w.friction * v[p]) *
-                w.gradLambda.transpose();
+    gradient +=
+        share / (w.area * steep) * (w.frictionVelocity - w.friction * v) * w.gradLambda.transpose();
     moment += share / (steep * steep) * w.gradLambda * w.gradLambda.transpose();
   }
   // What the same sums make of a linear field (Bonet & Lok 1999, sec. 3.3): among disordered
@@ -57,9 +56,9 @@ double shearRate_s(const Mat3& gradient) {
 // The second moment M of the weights, identity when full, becomes what evens it out. With fourth
 // moments as of isotropic neighbours, weights changed by n.B.n have the moment (tr B + 2 B) / 5
 // times theirs: B = (1 - 5/2 deviator of M) over a third of its trace.
-void Viscosity::evenOut(const WallSample& w, int i) {
+void Viscosity::evenOut(const WallSample& w, const float* moment, float* even) {
   std::array<double, 6> m;
-  for (int k = 0; k < 6; ++k) m[k] = evenness_.of[k][i];
+  for (int k = 0; k < 6; ++k) m[k] = moment[Tensors::kAt[k]];
   if (const double steep2 = w.gradLambda.squaredNorm(); steep2 > 0) {
     // beyond the wall: lambda all round and the rest along its normal (by parts)
     const Vec3& g = w.gradLambda;
@@ -68,10 +67,10 @@ void Viscosity::evenOut(const WallSample& w, int i) {
                              g.x() * g.y(), g.x() * g.z(), g.y() * g.z()};
     for (int k = 0; k < 6; ++k) m[k] += rest * outer[k] + (k < 3 ? w.lambda : 0);
   }
-  const double third = (m[0] + m[1] + m[2]) / 3, even = 1 / std::max(kLeastEvenness, third);
+  const double third = (m[0] + m[1] + m[2]) / 3, scale = 1 / std::max(kLeastEvenness, third);
   for (int k = 0; k < 6; ++k)
-    evenness_.of[k][i] = static_cast<float>(
-        even * ((k < 3 ? 1 : 0) - kIsotropic * even * (m[k] - (k < 3 ? third : 0))));
+    even[Tensors::kAt[k]] = static_cast<float>(
+        scale * ((k < 3 ? 1 : 0) - kIsotropic * scale * (m[k] - (k < 3 ? third : 0))));
 }
 
 void Viscosity::assemble(const Flow& f, double density, double leastPair, double dt,
@@ -80,17 +79,17 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
   const int n = f.count();
   pair_.resize(nb.index.size());
   mu_.assign(n + 1, 1.f);
-  evenness_.assign(n + 1, 0);
-  for (int i = 0; i < n; ++i) mu_[i] = static_cast<float>(viscosity_[i]);
-  const MomentSweep moments{f.lists(), nb.r.data(), &evenness_};
+  evenness_.assign(n + 1);
   f.sweep([&](int begin, int end, int) {
-    moments.run(begin, end);
-    for (int i = begin; i < end; ++i) evenOut(f.walls[f.particle(i)], i);
+    for (int i = begin; i < end; ++i) {
+      mu_[i] = static_cast<float>(viscosity_[i]);
+      evenOut(f.walls[f.particle(i)], nb.moment[i], evenness_[i]);
+    }
   });
   const PairViscositySweep sweep{f.lists(),
                                  nb.r.data(),
                                  mu_.data(),
-                                 &evenness_,
+                                 evenness_.of.data(),
                                  static_cast<float>(dt / density),  // 2, and half of two evennesses
                                  static_cast<float>(leastPair),
                                  static_cast<float>(kSoftening * support * support / 4),
@@ -116,15 +115,13 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
 Viscosity::Report Viscosity::solve(const Flow& f) {
   const int n = f.count();
   const auto sweep = [&](const Floats3& v) {
-    return ViscositySweep{f.lists(),         pair_.data(),      own_.data(),
-                          v.x.data(),        v.y.data(),        v.z.data(),
-                          product_.x.data(), product_.y.data(), product_.z.data()};
+    return ViscositySweep{f.lists(), pair_.data(), own_.data(), v.data(), product_.data()};
   };
   struct Sums {
     double rz = 0, rr = 0;
-    void add(float m, float x, float y, float z) {
-      const double square =
-          static_cast<double>(x) * x + static_cast<double>(y) * y + static_cast<double>(z) * z;
+    void add(float m, const float* v) {
+      double square = 0;
+      for (int a = 0; a < 3; ++a) square += static_cast<double>(v[a]) * v[a];
       rr += square;
       rz += m * square;
     }
@@ -136,13 +133,11 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
   Sums now;
   for (int i = 0; i < n; ++i) {
     right2 += right_[i].squaredNorm();
-    residual_.x[i] = static_cast<float>(right_[i].x()) - product_.x[i];
-    residual_.y[i] = static_cast<float>(right_[i].y()) - product_.y[i];
-    residual_.z[i] = static_cast<float>(right_[i].z()) - product_.z[i];
-    direction_.x[i] = inverse_[i] * residual_.x[i];
-    direction_.y[i] = inverse_[i] * residual_.y[i];
-    direction_.z[i] = inverse_[i] * residual_.z[i];
-    now.add(inverse_[i], residual_.x[i], residual_.y[i], residual_.z[i]);
+    for (int a = 0; a < 3; ++a) {
+      residual_[i][a] = static_cast<float>(right_[i][a]) - product_[i][a];
+      direction_[i][a] = inverse_[i] * residual_[i][a];
+    }
+    now.add(inverse_[i], residual_[i]);
   }
   const double goal2 =
       std::max(kTolerance * kTolerance * right2, kSmallSpeed_ms * kSmallSpeed_ms * n);
@@ -158,13 +153,11 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
     f.sweep([&](int b, int e, int c) {
       Sums part;
       for (int i = b; i < e; ++i) {
-        v_.x[i] += alpha * direction_.x[i];
-        v_.y[i] += alpha * direction_.y[i];
-        v_.z[i] += alpha * direction_.z[i];
-        residual_.x[i] -= alpha * product_.x[i];
-        residual_.y[i] -= alpha * product_.y[i];
-        residual_.z[i] -= alpha * product_.z[i];
-        part.add(inverse_[i], residual_.x[i], residual_.y[i], residual_.z[i]);
+        for (int a = 0; a < 3; ++a) {
+          v_[i][a] += alpha * direction_[i][a];
+          residual_[i][a] -= alpha * product_[i][a];
+        }
+        part.add(inverse_[i], residual_[i]);
       }
       parts[c] = part;
     });
@@ -175,11 +168,11 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
     }
     const float keep = static_cast<float>(next.rz / now.rz);
     now = next;
-    for (int i = 0; i < n; ++i) {
-      direction_.x[i] = inverse_[i] * residual_.x[i] + keep * direction_.x[i];
-      direction_.y[i] = inverse_[i] * residual_.y[i] + keep * direction_.y[i];
-      direction_.z[i] = inverse_[i] * residual_.z[i] + keep * direction_.z[i];
-    }
+    f.sweep([&](int b, int e, int) {
+      for (int i = b; i < e; ++i)
+        for (int a = 0; a < 3; ++a)
+          direction_[i][a] = inverse_[i] * residual_[i][a] + keep * direction_[i][a];
+    });
   }
   return report;
 }
@@ -204,13 +197,19 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->assign(n + 1);
   const bool constant = scheme.override_Pas > 0 || fluid.model == RheologyModel::newtonian;
   const double constant_Pas = scheme.override_Pas > 0 ? scheme.override_Pas : fluid.viscosity_Pas;
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      double& rate = shearRate_s_[f.particle(i)];
-      if (!constant && std::isnan(rate)) rate = shearRate_s(velocityGradient_s(f, v, i));
-      viscosity_[i] = constant ? constant_Pas : apparentViscosity_Pas(fluid, rate);
-    }
-  });
+  const auto findRates = [&] {
+    for (int i = 0; i < n; ++i) v_.set(i, v[f.particle(i)]);
+    const SlopeSweep slopes{f.lists(), v_.data()};
+    f.sweep([&](int begin, int end, int) {
+      for (int i = begin; i < end; ++i)
+        if (double& rate = shearRate_s_[f.particle(i)]; std::isnan(rate))
+          rate = shearRate_s(velocityGradient_s(f, slopes, v[f.particle(i)], i));
+    });
+  };
+  if (!constant) findRates();
+  for (int i = 0; i < n; ++i)
+    viscosity_[i] =
+        constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRate_s_[f.particle(i)]);
   assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
   for (int i = 0; i < n; ++i) {
     const int p = f.particle(i);
@@ -223,8 +222,7 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
   // The solution enters only through the antisymmetric pair terms, so that momentum is kept to
   // double precision however far the solve went.
   force_.resize(3 * n);
-  const DragSweep drag{f.lists(),   pair_.data(), v_.x.data(),
-                       v_.y.data(), v_.z.data(),  force_.data()};
+  const DragSweep drag{f.lists(), pair_.data(), v_.data(), force_.data()};
   f.sweep([&](int begin, int end, int) {
     drag.run(begin, end);
     for (int i = begin; i < end; ++i)
@@ -233,10 +231,7 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
   // The next step's viscosities follow from this field, before pressure has its say: what it does
   // to single particles is noise, which would thin a fluid that ought to be stiff.
   shearRate_s_.assign(v.size(), NAN);
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; !constant && i < end; ++i)
-      shearRate_s_[f.particle(i)] = shearRate_s(velocityGradient_s(f, v, i));
-  });
+  if (!constant) findRates();
   return report;
 }
 }  // namespace swallowclip::bolus

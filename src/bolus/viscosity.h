@@ -38,7 +38,7 @@ class Viscosity {
  private:
   void assemble(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
                 double support_m);
-  void evenOut(const WallSample& wall, int slot);
+  static void evenOut(const WallSample& wall, const float* moment, float* even);
   bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
                           double support_m) const;
   Report solve(const Flow& flow);
@@ -53,8 +53,8 @@ class Viscosity {
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
 
-/// dv_a / dx_b (1/s) at a slot, walls included.
-Mat3 velocityGradient_s(const Flow& flow, const std::vector<Vec3>& velocities, int slot);
+/// dv_a / dx_b (1/s) at a slot that moves with `velocity`, walls included.
+Mat3 velocityGradient_s(const Flow& flow, const SlopeSweep& slopes, const Vec3& velocity, int slot);
 /// sqrt(2 D:D) (1/s) of it.
 double shearRate_s(const Mat3& velocityGradient_s);
 }  // namespace swallowclip::bolus

@@ -23,24 +23,25 @@ double cornerAngle(const Vec3& at, const Vec3& b, const Vec3& c) {
 }  // namespace
 
 NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> x,
-                          std::span<const Triangle> triangles) {
+                          std::span<const Triangle> triangles, int guess) {
   NearestPoint best;
-  double best2 = INFINITY, bestDistance = INFINITY;
-  for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
+  double best2 = INFINITY;
+  const auto look = [&](int k) {
     const Triangle& t = triangles[k];
     const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
-    // no point of abc is nearer than its corner a less the longer of its two edges there
-    const double bound =
-        bestDistance + std::sqrt(std::max((b - a).squaredNorm(), (c - a).squaredNorm()));
-    if ((p - a).squaredNorm() > bound * bound) continue;
+    // No point of abc is nearer than its corner a less the longer of its two edges there, and
+    // (d + e)^2 is at most 2 (d^2 + e^2).
+    const double edge2 = std::max((b - a).squaredNorm(), (c - a).squaredNorm());
+    if ((p - a).squaredNorm() > 2 * (best2 + edge2)) return;
     const Vec3 bary = closestBarycentric(p, a, b, c);
     const Vec3 q = a * bary[0] + b * bary[1] + c * bary[2];
     const double d2 = (p - q).squaredNorm();
-    if (d2 >= best2) continue;
+    if (d2 > best2 || (d2 == best2 && k >= best.triangle)) return;
     best2 = d2;
-    bestDistance = std::sqrt(d2);
-    best = {k, bary, q, bestDistance};
-  }
+    best = {k, bary, q, std::sqrt(d2)};
+  };
+  if (guess >= 0) look(guess);
+  for (int k = 0; k < static_cast<int>(triangles.size()); ++k) look(k);
   return best;
 }
 
@@ -136,7 +137,7 @@ void WallField::sortPieces() {
   sorted.reserve(pieces_.size());
   for (int k : grid_.order()) sorted.push_back(pieces_[k]);
   pieces_.swap(sorted);
-  arrays_.resize(pieces_.size());
+  arrays_.resize(static_cast<int>(pieces_.size()));
   const auto put = [&](PieceArrays::Field first, std::size_t k, const Vec3& value) {
     for (int a = 0; a < 3; ++a) arrays_.field[first + a][k] = static_cast<float>(value[a]);
   };
@@ -144,14 +145,13 @@ void WallField::sortPieces() {
   for (std::size_t k = 0; k < pieces_.size(); ++k) {
     const Piece& t = pieces_[k];
     put(P::kCx, k, t.centroid - low_);
-    put(P::kAx, k, t.a - low_);
-    put(P::kBx, k, t.b - low_);
-    put(P::kGx, k, t.c - low_);
     put(P::kNx, k, t.normal);
     // one velocity a piece: what it varies within one is of second order
-    put(P::kVx, k, (t.va + t.vb + t.vc) / 3);
+    const Vec3 record[] = {t.a - low_, t.b - low_, t.c - low_, t.normal, (t.va + t.vb + t.vc) / 3};
+    float* to = arrays_.record(static_cast<int>(k));
+    for (int e = 0; e < 15; ++e) to[e] = static_cast<float>(record[e / 3][e % 3]);
+    to[15] = static_cast<float>(t.area);
     arrays_.field[P::kReach][k] = static_cast<float>(table_->support_m() + t.radius);
-    arrays_.field[P::kArea][k] = static_cast<float>(t.area);
     const double edge = std::max({(t.b - t.a).norm(), (t.c - t.b).norm(), (t.a - t.c).norm()});
     arrays_.field[P::kRule][k] = edge < kOnePoint * spacing_m_      ? 0.f
                                  : edge < kThreePoints * spacing_m_ ? 1.f
@@ -173,9 +173,13 @@ WallSample WallField::sample(const Vec3& p) const {
                                   static_cast<float>(spacing_m_),
                                   table_->isCubicSpline()};
   WallSums sums;
-  grid_.rowsAround(
-      p, [&](int first, int last) { quadrature.add(at.x(), at.y(), at.z(), first, last, sums); });
+  thread_local NearPieces near;
+  near.clear();
+  grid_.rowsAround(p, [&](int first, int last) {
+    quadrature.look(at.x(), at.y(), at.z(), first, last, near, sums);
+  });
   if (sums.nearest < 0) return out;
+  quadrature.integrate(at.x(), at.y(), at.z(), near, sums);
   out.lambda = sums.lambda;
   out.lambdaSlope = sums.lambda + sums.shape / 3;
   out.flux_s = sums.flux;

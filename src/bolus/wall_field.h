@@ -39,14 +39,15 @@ struct Contact {
   int triangle = -1;             ///< index in the skin
 };
 
-/// Closest point of the whole surface by brute force: slow and sure, for rare questions.
+/// Closest point of the whole surface by brute force, for rare questions; the sooner, the better
+/// the `guess` of its triangle (-1: none), on which the answer does not depend.
 struct NearestPoint {
   int triangle = -1;
   Vec3 barycentric = Vec3::Zero(), point = Vec3::Zero();
   double distance_m = 0;
 };
 NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> positions,
-                          std::span<const Triangle> triangles);
+                          std::span<const Triangle> triangles, int guess = -1);
 
 class WallField {
  public:

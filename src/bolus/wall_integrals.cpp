@@ -11,9 +11,11 @@
 namespace swallowclip::bolus {
 using namespace simd;
 
-void PieceArrays::resize(std::size_t n) {
+void PieceArrays::resize(int n) {
+  count = n;
   for (auto& f : field) f.assign(n + kLanes, 0.f);
   std::fill(field[kReach].begin(), field[kReach].end(), -1.f);
+  records.assign(static_cast<std::size_t>(kRecord) * (n + 1), 0.f);
 }
 
 namespace {
@@ -71,16 +73,14 @@ SC_INLINE F8 dot(const V& a, const V& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-SC_CLONES void integrate(const WallQuadrature& q, float px, float py, float pz, int begin, int end,
-                         WallSums& sums) {
+SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, int begin, int end,
+                          int* out, WallSums& sums) {
   using P = PieceArrays;
-  const PieceArrays& p = *q.pieces;
   const F8 ox = all(px), oy = all(py), oz = all(pz), zero = all(0);
-  F8 lambda = zero, shape = zero, flux = zero, friction = zero, area = zero, speed = zero;
-  V grad{zero, zero, zero}, drag{zero, zero, zero};
   const I8 lanes{0, 1, 2, 3, 4, 5, 6, 7};
-  F8 nearest2 = all(1e30f);
-  I8 nearest = allInt(-1);
+  F8 speed = zero, nearest2 = all(sums.nearest2);
+  I8 nearest = allInt(sums.nearest);
+  int found = 0;
   for (int k = begin; k < end; k += kLanes) {
     const F8 cx = load(p.at(P::kCx) + k) - ox, cy = load(p.at(P::kCy) + k) - oy,
              cz = load(p.at(P::kCz) + k) - oz, reach = load(p.at(P::kReach) + k);
@@ -91,41 +91,61 @@ SC_CLONES void integrate(const WallQuadrature& q, float px, float py, float pz, 
     nearest2 = select(nearer, away2, nearest2);
     nearest = nearer ? lanes + allInt(k) : nearest;
     speed = largest(speed, select(near, load(p.at(P::kSpeed) + k), zero));
-    const V a{load(p.at(P::kAx) + k) - ox, load(p.at(P::kAy) + k) - oy,
-              load(p.at(P::kAz) + k) - oz};
-    const V b{load(p.at(P::kBx) + k) - ox, load(p.at(P::kBy) + k) - oy,
-              load(p.at(P::kBz) + k) - oz};
-    const V c{load(p.at(P::kGx) + k) - ox, load(p.at(P::kGy) + k) - oy,
-              load(p.at(P::kGz) + k) - oz};
-    const V n{load(p.at(P::kNx) + k), load(p.at(P::kNy) + k), load(p.at(P::kNz) + k)};
-    const V v{load(p.at(P::kVx) + k), load(p.at(P::kVy) + k), load(p.at(P::kVz) + k)};
-    const F8 pieceArea = select(near, load(p.at(P::kArea) + k), zero);
-    const F8 offset = dot(a, n);  // r . n, the same all over the piece
-    const F8 radius = all(kFarRadii) * (reach - all(q.support_m));
-    const I8 close = near & (away2 < largest(radius * radius, all(q.spacing_m * q.spacing_m)));
-    if (any(close)) {
-      // solid angle (van Oosterom & Strackee 1983), positive from the inner side: twice the area
-      // times the distance of the plane is the triple product, without cancellation
-      const F8 la = root(dot(a, a)), lb = root(dot(b, b)), lc = root(dot(c, c));
-      const F8 triple = all(2) * pieceArea * offset;
-      const F8 below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-      lambda += select(close, all(1 / (2 * kPif)) * arcTangent(triple, below), zero);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      out[found] = k + lane;
+      found -= near[lane];  // true is -1
     }
-    const F8 singular = select(close, zero, all(1 / (4 * kPif)));
-    F8 inside = zero, shear = zero;  // of W and W / distance over the piece
-    const F8 kind = load(p.at(P::kRule) + k);
-    for (int m = 0; m < 3; ++m) {
-      const I8 mine = near & (kind == all(static_cast<float>(m)));
-      if (!any(mine)) continue;
-      const F8 ruleArea = select(mine, pieceArea, zero);
-      for (int g = 0; g < kRules[m].count; ++g) {
-        const Point& at = kRules[m].points[g];
-        const F8 u = all(at.a), t = all(at.b), w = all(at.c);
+  }
+  for (int lane = 0; lane < kLanes; ++lane) {
+    sums.normalSpeed = std::max(sums.normalSpeed, static_cast<float>(speed[lane]));
+    if (nearest2[lane] >= sums.nearest2) continue;
+    sums.nearest2 = nearest2[lane];
+    sums.nearest = nearest[lane];
+  }
+  return found;
+}
+
+SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float pz,
+                            const NearPieces& pieces, WallSums& sums) {
+  using P = PieceArrays;
+  const PieceArrays& p = *q.pieces;
+  const F8 zero = all(0), o[3] = {all(px), all(py), all(pz)};
+  F8 lambda = zero, shape = zero, flux = zero, friction = zero, area = zero;
+  V grad{zero, zero, zero}, drag{zero, zero, zero};
+  for (int rule = 0; rule < 3; ++rule)
+    for (int k = 0; k < pieces.count[rule]; k += kLanes) {
+      const int* at = &pieces.of[rule][k];
+      F8 first[8], second[8];
+      gather8<P::kRecord>(p.records.data(), at, first);
+      gather8<P::kRecord>(p.records.data() + 8, at, second);
+      const V a{first[0] - o[0], first[1] - o[1], first[2] - o[2]};
+      const V b{first[3] - o[0], first[4] - o[1], first[5] - o[2]};
+      const V c{first[6] - o[0], first[7] - o[1], second[0] - o[2]};
+      const V n{second[1], second[2], second[3]}, v{second[4], second[5], second[6]};
+      const F8 pieceArea = second[7], third = all(1.f / 3);
+      const V centre{(a.x + b.x + c.x) * third, (a.y + b.y + c.y) * third,
+                     (a.z + b.z + c.z) * third};
+      const F8 offset = dot(a, n);  // r . n, the same all over the piece
+      const F8 radius = all(kFarRadii) * (gather(p.at(P::kReach), at) - all(q.support_m));
+      const I8 close =
+          dot(centre, centre) < largest(radius * radius, all(q.spacing_m * q.spacing_m));
+      if (any(close)) {
+        // solid angle (van Oosterom & Strackee 1983), positive from the inner side: twice the area
+        // times the distance of the plane is the triple product, without cancellation
+        const F8 la = root(dot(a, a)), lb = root(dot(b, b)), lc = root(dot(c, c));
+        const F8 triple = all(2) * pieceArea * offset;
+        const F8 below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        lambda += select(close, all(1 / (2 * kPif)) * arcTangent(triple, below), zero);
+      }
+      const F8 singular = select(close, zero, all(1 / (4 * kPif)));
+      F8 inside = zero, shear = zero, solid = zero;  // of W, W / distance, r-hat . n over the piece
+      for (int g = 0; g < kRules[rule].count; ++g) {
+        const Point& point = kRules[rule].points[g];
+        const F8 u = all(point.a), t = all(point.b), w = all(point.c);
         const V x{u * a.x + t * b.x + w * c.x, u * a.y + t * b.y + w * c.y,
                   u * a.z + t * b.z + w * c.z};
         const F8 r = root(dot(x, x));
         const F8 inverse = all(1) / largest(r, all(1e-10f));
-        const F8 dA = all(at.weight) * ruleArea;
         F8 value, f;  // W, F / r
         if (q.cubicSpline) {
           const F8 perH = r * all(q.perHalfSupport);
@@ -148,44 +168,35 @@ SC_CLONES void integrate(const WallQuadrature& q, float px, float py, float pz, 
           value = select(outside, zero, w0 + part * w1);
           f = select(outside, all(1 / (4 * kPif)) / (r * r * r), f0 + part * f1);
         }
-        lambda += dA * offset * (singular * inverse * inverse * inverse - f);
-        const F8 wA = dA * value;
-        shape += wA * offset;
-        inside += wA;
+        const F8 weight = all(point.weight), share = weight * value;
+        solid += weight * (singular * inverse * inverse * inverse - f);
+        inside += share;
         // 0.25 r: pieces seen edge-on have no shear distance of their own
-        shear += wA / largest(largest(offset, all(0.25f) * r), all(q.leastShear_m));
+        shear += share / largest(largest(offset, all(0.25f) * r), all(q.leastShear_m));
       }
+      lambda += pieceArea * offset * solid;
+      inside *= pieceArea;
+      shape += inside * offset;
+      grad.x += inside * n.x;
+      grad.y += inside * n.y;
+      grad.z += inside * n.z;
+      flux += inside * dot(v, n);
+      // a wall seen from behind does not rub
+      const I8 front = offset > zero;
+      shear = select(front, shear * pieceArea, zero);
+      friction += shear;
+      drag.x += shear * v.x;
+      drag.y += shear * v.y;
+      drag.z += shear * v.z;
+      area += select(front, inside, zero);
     }
-    grad.x += inside * n.x;
-    grad.y += inside * n.y;
-    grad.z += inside * n.z;
-    flux += inside * dot(v, n);
-    // a wall seen from behind does not rub
-    const I8 front = offset > zero;
-    shear = select(front, shear, zero);
-    friction += shear;
-    drag.x += shear * v.x;
-    drag.y += shear * v.y;
-    drag.z += shear * v.z;
-    area += select(front, inside, zero);
-  }
-  sums.lambda += sum(lambda);
-  sums.shape += sum(shape);
-  sums.flux += sum(flux);
-  sums.friction += sum(friction);
-  sums.area += sum(area);
-  sums.gradLambda[0] += sum(grad.x);
-  sums.gradLambda[1] += sum(grad.y);
-  sums.gradLambda[2] += sum(grad.z);
-  sums.frictionVelocity[0] += sum(drag.x);
-  sums.frictionVelocity[1] += sum(drag.y);
-  sums.frictionVelocity[2] += sum(drag.z);
-  for (int lane = 0; lane < kLanes; ++lane) {
-    sums.normalSpeed = std::max(sums.normalSpeed, static_cast<float>(speed[lane]));
-    if (nearest[lane] < 0 || (sums.nearest >= 0 && nearest2[lane] >= sums.nearest2)) continue;
-    sums.nearest2 = nearest2[lane];
-    sums.nearest = nearest[lane];
-  }
+  sums.lambda = sum(lambda);
+  sums.shape = sum(shape);
+  sums.flux = sum(flux);
+  sums.friction = sum(friction);
+  sums.area = sum(area);
+  sums.gradLambda = {sum(grad.x), sum(grad.y), sum(grad.z)};
+  sums.frictionVelocity = {sum(drag.x), sum(drag.y), sum(drag.z)};
 }
 
 SC_CLONES int candidates(const PieceArrays& p, float px, float py, float pz, float reach,
@@ -212,8 +223,25 @@ SC_CLONES int candidates(const PieceArrays& p, float px, float py, float pz, flo
 }
 }  // namespace
 
-void WallQuadrature::add(float x, float y, float z, int begin, int end, WallSums& sums) const {
-  integrate(*this, x, y, z, begin, end, sums);
+void WallQuadrature::look(float x, float y, float z, int begin, int end, NearPieces& near,
+                          WallSums& sums) const {
+  near.all.resize(std::max<std::size_t>(near.all.size(), end - begin + kLanes));
+  const int found = lookThrough(*pieces, x, y, z, begin, end, near.all.data(), sums);
+  const float* ruleOf = pieces->at(PieceArrays::kRule);
+  for (auto& list : near.of)
+    list.resize(std::max<std::size_t>(list.size(), near.total + found + kLanes));
+  near.total += found;
+  for (int k = 0; k < found; ++k) {
+    const int rule = static_cast<int>(ruleOf[near.all[k]]);
+    near.of[rule][near.count[rule]++] = near.all[k];
+  }
+}
+
+void WallQuadrature::integrate(float x, float y, float z, NearPieces& near, WallSums& sums) const {
+  for (int rule = 0; rule < 3; ++rule)
+    if (near.count[rule] > 0)
+      std::fill_n(&near.of[rule][near.count[rule]], kLanes - 1, pieces->count);  // no piece
+  integrateAll(*this, x, y, z, near, sums);
 }
 
 int nearPieces(const PieceArrays& pieces, float x, float y, float z, float reach_m, float support_m,

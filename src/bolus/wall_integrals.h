@@ -8,54 +8,55 @@
 
 namespace swallowclip::bolus {
 
-/// Flat arrays of pieces in the order of their cells; padded with pieces that reach nothing.
+/// Pieces in the order of their cells, padded with pieces that reach nothing: what is looked at in
+/// a row as flat arrays, what is integrated as one record each.
 struct PieceArrays {
-  // kReach: radius and kernel support; kRule: 0, 1, 2 for 1, 3, 7 quadrature points
   enum Field {
     kCx,
     kCy,
-    kCz,
-    kReach,
-    kAx,
-    kAy,
-    kAz,
-    kBx,
-    kBy,
-    kBz,
-    kGx,
-    kGy,
-    kGz,  // c is taken
+    kCz,     // centroid
+    kReach,  // radius and kernel support
     kNx,
     kNy,
     kNz,
-    kArea,
-    kVx,
-    kVy,
-    kVz,
-    kSpeed,
-    kRule,
+    kSpeed,  // fastest along its normal
+    kRule,   // 0, 1, 2 for 1, 3, 7 quadrature points
     kFields
   };
+  static constexpr int kRecord = 16;  ///< corners a, b, c, normal, velocity (3 each), area
   std::array<std::vector<float>, kFields> field;
-  void resize(std::size_t pieces);
+  std::vector<float> records;
+  int count = 0;
+  void resize(int pieces);
   const float* at(Field f) const { return field[f].data(); }
+  float* record(int piece) { return &records[static_cast<std::size_t>(kRecord) * piece]; }
 };
 
 /// Sums of one particle; names as in WallSample.
 struct WallSums {
   double lambda = 0, shape = 0, flux = 0, friction = 0, area = 0;
   std::array<double, 3> gradLambda{}, frictionVelocity{};
-  float normalSpeed = 0, nearest2 = 0;
-  int nearest = -1;  ///< piece with the nearest centroid
+  float normalSpeed = 0, nearest2 = 1e30f;  // m/s, m^2
+  int nearest = -1;                         ///< piece with the nearest centroid
 };
 
-/// What the pieces [begin, end) give to a particle at (x, y, z).
+/// Pieces within reach of a particle, by their rule.
+struct NearPieces {
+  std::array<std::vector<int>, 3> of;
+  std::array<int, 3> count{};
+  int total = 0;
+  std::vector<int> all;  // of one row
+  void clear() { count = {}, total = 0; }
+};
+
+/// What pieces give to a particle at (x, y, z): first look through rows of them, then integrate.
 struct WallQuadrature {
   const PieceArrays* pieces;
   const KernelTable::Wall* table;
   float nodesPerMetre, leastShear_m, perHalfSupport, w0, support_m, spacing_m;
   bool cubicSpline;
-  void add(float x, float y, float z, int begin, int end, WallSums& sums) const;
+  void look(float x, float y, float z, int begin, int end, NearPieces& near, WallSums& sums) const;
+  void integrate(float x, float y, float z, NearPieces& near, WallSums& sums) const;
 };
 
 /// Pieces of [begin, end) with a point perhaps within `reach` of (x, y, z): appended to out.

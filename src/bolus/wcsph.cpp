@@ -98,7 +98,7 @@ void Wcsph::kick(const Flow& f, const std::vector<std::vector<Contact>>& contact
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
       Vec3 a = Vec3::Zero();
-      for (int e = nb.start[i]; e < nb.start[i + 1] && nb.index[e] < nb.count; ++e)
+      for (int e = nb.start[i]; e < nb.stop[i] && nb.index[e] < nb.count; ++e)
         a -= (k_[i] + k_[nb.index[e]]) * Vec3(nb.gx[e], nb.gy[e], nb.gz[e]);
       a -= kWallMirror * k_[i] * f.walls[p].gradLambda;
       a /= ownShare(f.walls[p]);

@@ -10,9 +10,9 @@
 namespace swallowclip {
 namespace {
 // Loops of a solver follow each other within microseconds, waking a sleeper takes ten or more. So a
-// waiting thread looks this many times before it sleeps: about 20 us (assumed, 5 to 50 us), which
-// is nothing to a machine that has other work for the core.
-constexpr int kLooks = 400;
+// waiting thread looks this many times before it sleeps: about 0.1 ms (assumed, 0.05 to 0.3 ms),
+// which is nothing to a machine that has other work for the core.
+constexpr int kLooks = 2000;
 
 void pause() {
 #if defined(__x86_64__)

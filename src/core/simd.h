@@ -19,7 +19,8 @@ namespace swallowclip::simd {
 inline constexpr int kLanes = 8;
 using F8 = float __attribute__((vector_size(32)));
 using I8 = int __attribute__((vector_size(32)));
-using D8 = double __attribute__((vector_size(64)));
+using F4 = float __attribute__((vector_size(16)));
+using D4 = double __attribute__((vector_size(32)));
 
 SC_INLINE F8 all(float x) {
   return x - F8{};  // becomes one broadcast
@@ -42,6 +43,47 @@ SC_INLINE void store(float* p, F8 v) {
 }
 SC_INLINE F8 gather(const float* p, const int* at) {
   return F8{p[at[0]], p[at[1]], p[at[2]], p[at[3]], p[at[4]], p[at[5]], p[at[6]], p[at[7]]};
+}
+struct F8x3 {
+  F8 x, y, z;
+};
+/// The first three of `stride` floats each: p[stride at[k]] and the two behind it.
+template <int stride = 4>
+SC_INLINE F8x3 gather3(const float* p, const int* at) {
+  const auto pair = [&](int k) {
+    F4 a, b;
+    std::memcpy(&a, p + stride * static_cast<long>(at[k]), sizeof a);
+    std::memcpy(&b, p + stride * static_cast<long>(at[k + 4]), sizeof b);
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  const F8 a = pair(0), b = pair(1), c = pair(2), d = pair(3);
+  const F8 xy = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+  const F8 xyNext = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+  const F8 z = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+  const F8 zNext = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+  return {__builtin_shufflevector(xy, xyNext, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(xy, xyNext, 2, 3, 10, 11, 6, 7, 14, 15),
+          __builtin_shufflevector(z, zNext, 0, 1, 8, 9, 4, 5, 12, 13)};
+}
+/// Rows of eight floats at p[stride at[k]], turned into eight columns.
+template <int stride>
+SC_INLINE void gather8(const float* p, const int* at, F8 (&out)[8]) {
+  F8 r[8], pairs[8], fours[8];
+  for (int k = 0; k < 8; ++k) r[k] = load(p + stride * static_cast<long>(at[k]));
+  for (int k = 0; k < 4; ++k) {
+    pairs[2 * k] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    pairs[2 * k + 1] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  for (int h = 0; h < 2; ++h)
+    for (int k = 0; k < 2; ++k) {
+      const F8 a = pairs[4 * h + k], b = pairs[4 * h + 2 + k];
+      fours[4 * h + 2 * k] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+      fours[4 * h + 2 * k + 1] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int k = 0; k < 4; ++k) {
+    out[k] = __builtin_shufflevector(fours[k], fours[4 + k], 0, 1, 2, 3, 8, 9, 10, 11);
+    out[4 + k] = __builtin_shufflevector(fours[k], fours[4 + k], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
 }
 SC_INLINE F8 select(I8 mask, F8 yes, F8 no) {
   return mask ? yes : no;
@@ -67,11 +109,17 @@ SC_INLINE F8 root(F8 a) {
 SC_INLINE float sum(F8 a) {
   return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
-SC_INLINE D8 wide(F8 a) {
-  return __builtin_convertvector(a, D8);
-}
-SC_INLINE double sum(D8 a) {
-  return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
+/// Eight sums in double precision.
+struct D8 {
+  D4 low{}, high{};
+  SC_INLINE void add(F8 a) {
+    low += __builtin_convertvector(__builtin_shufflevector(a, a, 0, 1, 2, 3), D4);
+    high += __builtin_convertvector(__builtin_shufflevector(a, a, 4, 5, 6, 7), D4);
+  }
+};
+SC_INLINE double sum(const D8& a) {
+  const D4 s = a.low + a.high;
+  return (s[0] + s[2]) + (s[1] + s[3]);
 }
 SC_INLINE bool any(I8 mask) {
   long long part[4];

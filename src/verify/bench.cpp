@@ -88,6 +88,7 @@ Result<Measured> run(CaseDef def, const Row& row, int threads) {
   b.courant = kCourant;
   b.densityTolerance = row.tolerance;
   b.rateTolerance = kRateTolerance;
+  b.solveShare = 1;      // the other solver's tolerances
   b.adaptsStep = false;  // the other solver's steps
   bolus::Solver solver(b, domain->walls(), threads);
   if (auto ok = solver.place(0, start->positions); !ok) return std::unexpected(ok.error());

@@ -11,13 +11,21 @@ namespace swallowclip::bolus {
 namespace {
 constexpr double kVolume_m3 = 8e-9;
 
-/// Every pair, images included, as sets: the lists' order is that of the cells.
+/// Every pair, images included, as sets: the lists' order is that of the cells. With a skin they
+/// are built where the points are just under half of it away, and then follow them.
 void expectEveryPair(const std::vector<Vec3>& points, const std::vector<std::uint8_t>& take,
-                     const Vec3& period_m) {
+                     const Vec3& period_m, double skin_m = 0) {
   const Kernel kernel(KernelKind::cubicSpline, 4e-3);
   ThreadPool pool(2);
   Neighbours nb;
-  nb.build(points, take, KernelTable(kernel), kVolume_m3, period_m, pool);
+  const KernelTable table(kernel);
+  std::mt19937 random(3);
+  std::normal_distribution<double> any;
+  std::vector<Vec3> before = points;
+  for (Vec3& p : before)
+    p += 0.499 * skin_m * Vec3(any(random), any(random), any(random)).normalized();
+  nb.build(before, take, table, kVolume_m3, period_m, skin_m, pool);
+  ASSERT_EQ(nb.follow(points, take, table, kVolume_m3, pool), skin_m > 0);
   const double unit = kVolume_m3 * kernel.w(0);
   int pairs = 0;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
@@ -26,7 +34,7 @@ void expectEveryPair(const std::vector<Vec3>& points, const std::vector<std::uin
     if (slot < 0) continue;
     EXPECT_EQ(nb.id[slot], i);
     std::multimap<int, Vec3> found;
-    for (int k = nb.start[slot]; k < nb.start[slot + 1]; ++k) {
+    for (int k = nb.start[slot]; k < nb.stop[slot]; ++k) {
       const Vec3 g(nb.gx[k], nb.gy[k], nb.gz[k]);
       if (nb.index[k] == nb.count)
         EXPECT_EQ(g.norm(), 0);
@@ -70,6 +78,27 @@ TEST(Neighbours, AgreeWithEveryPair) {
   expectEveryPair(scattered(0.05), take, Vec3::Zero());
 }
 
+TEST(Neighbours, FollowPointsWithinTheSkin) {
+  const std::vector<std::uint8_t> all(700, 1);
+  expectEveryPair(scattered(0.05), all, Vec3::Zero(), 1e-3);
+  expectEveryPair(scattered(0.05), all, {0.05, 0.02, 0.015}, 1e-3);
+}
+
+TEST(Neighbours, DoNotFollowFartherOrOthers) {
+  std::vector<Vec3> points = scattered(0.05);
+  std::vector<std::uint8_t> take(700, 1);
+  const KernelTable table(Kernel(KernelKind::cubicSpline, 4e-3));
+  ThreadPool pool(1);
+  Neighbours nb;
+  nb.build(points, take, table, kVolume_m3, Vec3::Zero(), 1e-3, pool);
+  points[5].x() += 0.6e-3;
+  EXPECT_FALSE(nb.follow(points, take, table, kVolume_m3, pool));
+  points[5].x() -= 0.2e-3;
+  EXPECT_TRUE(nb.follow(points, take, table, kVolume_m3, pool));
+  take[9] = 0;
+  EXPECT_FALSE(nb.follow(points, take, table, kVolume_m3, pool));
+}
+
 TEST(Neighbours, ImagesOfAPeriodicDomain) {
   expectEveryPair(scattered(0.05), std::vector<std::uint8_t>(700, 1), {0.05, 0.02, 0.015});
 }
@@ -79,14 +108,14 @@ TEST(Neighbours, GradientsAreAntisymmetricToTheBit) {
   ThreadPool pool(1);
   Neighbours nb;
   nb.build(points, {}, KernelTable(Kernel(KernelKind::cubicSpline, 4e-3)), kVolume_m3, Vec3::Zero(),
-           pool);
+           0, pool);
   for (int i = 0; i < nb.count; ++i)
-    for (int k = nb.start[i]; k < nb.start[i + 1]; ++k) {
+    for (int k = nb.start[i]; k < nb.stop[i]; ++k) {
       const int j = nb.index[k];
       if (j == nb.count) continue;
       int back = nb.start[j];
-      while (back < nb.start[j + 1] && nb.index[back] != i) ++back;
-      ASSERT_LT(back, nb.start[j + 1]);
+      while (back < nb.stop[j] && nb.index[back] != i) ++back;
+      ASSERT_LT(back, nb.stop[j]);
       EXPECT_EQ(nb.gx[k], -nb.gx[back]);
       EXPECT_EQ(nb.gz[k], -nb.gz[back]);
     }
@@ -97,7 +126,7 @@ TEST(Neighbours, StrayParticleCostsNoMemory) {
   ThreadPool pool(1);
   Neighbours nb;
   nb.build(points, {}, KernelTable(Kernel(KernelKind::cubicSpline, 4e-3)), kVolume_m3, Vec3::Zero(),
-           pool);
+           0, pool);
   EXPECT_EQ(nb.count, 3);
   EXPECT_EQ(nb.index.size(), 2u * 8);
 }
