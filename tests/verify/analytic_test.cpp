@@ -108,6 +108,23 @@ TEST(Analytic, PeristalticFlowMatchesQuadrature) {
   EXPECT_NEAR(shapiroTube(1), 1.5, 1e-15);
 }
 
+TEST(Analytic, CapsAreAsSlenderAsTheirSlices) {
+  for (const double angle : {0.3, 1.0, kPi / 2, 2.5, 3.1}) {
+    double volume = 0, height = 0, square = 0;
+    const int n = 20000;
+    const double floor = std::cos(angle);
+    for (int k = 0; k < n; ++k) {
+      const double u = floor + (1 - floor) * (k + 0.5) / n, disc = 1 - u * u;
+      volume += disc;
+      height += disc * (u - floor);
+      square += disc * disc / 2;
+    }
+    EXPECT_NEAR(capSlenderness(angle), height / volume / std::sqrt(square / volume), 1e-6);
+  }
+  EXPECT_NEAR(capSlenderness(kPi / 2), 3. / 8 / std::sqrt(2. / 5), 1e-12) << "half a ball";
+  EXPECT_LT(capSlenderness(1e-6), capSlenderness(1e-2));
+}
+
 // The profiles of Huppert's similarity solutions hold the volume that they started with.
 TEST(Analytic, GravityCurrentHoldsItsVolume) {
   const double g = 9.81, nu = 1e-3, t = 2;
