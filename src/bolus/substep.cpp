@@ -157,10 +157,10 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
   shifting.carry(flow, dt_s, moving, v);
   projection.stress_m2s2(flow, particles.pressure_Pa);
-  if (tension) tension->addStress_m2s2(particles.pressure_Pa);
   // per volume that the particle really has
   for (std::size_t i = 0; i < v.size(); ++i)
     particles.pressure_Pa[i] *= def.fluid.density_kgm3 * particles.densityRatio[i];
+  if (tension) tension->addPressure_Pa(particles.densityRatio, particles.pressure_Pa);
 }
 
 // A step that speeds a particle up beyond the reach of its contacts is taken again, half as long.
@@ -188,6 +188,7 @@ void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
   if (tension) tension->push(dt_s, particles.velocities);
   wcsph.kick(flow, contacts, def.gravity_ms2, def.spacing_m, def.fluid.density_kgm3, dt_s,
              particles.velocities, particles.pressure_Pa);
+  if (tension) tension->addPressure_Pa(particles.densityRatio, particles.pressure_Pa);
   const double least_Pas =
       def.fluid.density_kgm3 * wcsph.leastViscosity_m2s(kernel.support_m() / 2);
   report.viscosityIterations =

@@ -27,7 +27,8 @@ double meanDistance_m(const Kernel& kernel) {  // int r W dV, by the midpoint ru
 // (rho + rho_air) / 2 dx^3 / (2 pi sigma), Brackbill, Kothe & Zemach 1992, eq. 61, with weightless
 // air.
 Tension::Tension(const Fluid& fluid, const Kernel& own, double spacing_m)
-    : spacing_m_(spacing_m),
+    : density_kgm3_(fluid.density_kgm3),
+      spacing_m_(spacing_m),
       longestStep_s_(std::sqrt(fluid.density_kgm3 * std::pow(spacing_m, 3) /
                                (4 * kPi * fluid.surfaceTension_Nm))),
       kernel_(KernelKind::cubicSpline, kTensionReach * spacing_m),
@@ -82,7 +83,10 @@ void Tension::push(double dt_s, std::vector<Vec3>& v) const {
   for (std::size_t i = 0; i < v.size(); ++i) v[i] += dt_s * acceleration_[i];
 }
 
-void Tension::addStress_m2s2(std::vector<double>& stress) const {
-  for (std::size_t i = 0; i < stress.size(); ++i) stress[i] += stress_[i];
+// As the projections' own, per volume that a particle really has (substep.cpp).
+void Tension::addPressure_Pa(const std::vector<double>& densityRatio,
+                             std::vector<double>& pressure_Pa) const {
+  for (std::size_t i = 0; i < pressure_Pa.size(); ++i)
+    pressure_Pa[i] += density_kgm3_ * densityRatio[i] * stress_[i];
 }
 }  // namespace swallowclip::bolus
