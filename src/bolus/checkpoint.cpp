@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000002;  // "SWBC", layout 2
+constexpr std::uint64_t kMark = 0x53574243'00000003;  // "SWBC", layout 3
 
 class Writer {
  public:
@@ -129,6 +129,8 @@ std::uint64_t kindOf(const BolusDef& d, std::size_t triangles) {
                             f.lambda_s,
                             f.minViscosity_Pas,
                             f.maxViscosity_Pas,
+                            f.surfaceTension_Nm,
+                            f.contactAngle_rad,
                             static_cast<double>(triangles)};
   return stateDigest(numbers, sizeof numbers);
 }

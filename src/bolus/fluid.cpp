@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/vec.h"
+
 namespace swallowclip::bolus {
 namespace {
 constexpr std::array<const char*, 4> kNames{"newtonian", "power-law", "carreau",
@@ -36,6 +38,10 @@ std::string Fluid::validate() const {
     return bad("density_kgm3", density_kgm3, "500 to 5000");
   if (!(minViscosity_Pas > 0 && minViscosity_Pas <= maxViscosity_Pas && maxViscosity_Pas <= 1e4))
     return bad("minViscosity_Pas", minViscosity_Pas, "0 < min <= max <= 10000");
+  if (!(surfaceTension_Nm >= 0 && surfaceTension_Nm <= 1))
+    return bad("surfaceTension_Nm", surfaceTension_Nm, "0 to 1");
+  if (!(contactAngle_rad >= 0 && contactAngle_rad <= kPi))
+    return bad("contactAngle_rad", contactAngle_rad, "0 to pi");
   if (model == RheologyModel::newtonian && !(viscosity_Pas > 0 && viscosity_Pas <= 1e4))
     return bad("viscosity_Pas", viscosity_Pas, "0 to 10000");
   if (model == RheologyModel::newtonian) return "";

@@ -23,6 +23,10 @@ struct Fluid {
   double yield_Pa = 0;          ///< Herschel-Bulkley
   double eta0_Pas = 0, etaInf_Pas = 0.003, lambda_s = 10;   ///< Carreau (clinical-reference 4)
   double minViscosity_Pas = 0.002, maxViscosity_Pas = 100;  ///< clip (clinical-reference 4)
+  double surfaceTension_Nm = 0;                             ///< 0: none, as in the thesis
+  /// Between wall and surface, through the fluid. Assumed pi/2 (pi/6 to 2 pi/3): walls that neither
+  /// draw the fluid on nor shed it. Of no effect without surface tension.
+  double contactAngle_rad = 1.5707963267948966;
 
   /// "" when every number is usable, else what is wrong with which field.
   std::string validate() const;

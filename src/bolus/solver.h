@@ -58,7 +58,8 @@ struct Particles {
   std::vector<Vec3> positions, velocities;
   std::vector<double> densityRatio;  ///< rho / rho0
   std::vector<double>
-      pressure_Pa;  ///< above that of the air; mean over the last advanceTo (wcsph: last step)
+      pressure_Pa;  ///< above that of the air; mean over the last advanceTo (wcsph: last step).
+                    ///< What surface tension's attraction transmits is part of it.
   std::vector<State> state;
   std::vector<double> s_m;           ///< path coordinate of the nearest skin point
   std::vector<std::uint8_t> branch;  ///< WallMotion::branch of the nearest skin vertex

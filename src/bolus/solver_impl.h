@@ -2,6 +2,7 @@
 // Inside of the solver: the fluid between the walls of one moment, and one substep.
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "bolus/projection.h"
 #include "bolus/shifting.h"
 #include "bolus/solver.h"
+#include "bolus/tension.h"
 #include "bolus/viscosity.h"
 #include "bolus/wcsph.h"
 
@@ -100,6 +102,7 @@ struct Solver::Impl {
   Shifting shifting;
   Viscosity viscosity;
   Wcsph wcsph;
+  std::optional<Tension> tension;  // without surface tension: none
 
   // The skin's triangles, then the caps of its two branches (made when one first shuts).
   std::vector<Triangle> wallTriangles;

@@ -132,6 +132,16 @@ void WallField::rebuild(std::span<const Triangle> triangles, std::span<const Vec
   sortPieces();
 }
 
+void WallField::follow(const WallField& other, std::span<const Triangle> triangles,
+                       std::span<const Vec3> x, std::span<const Vec3> v,
+                       std::span<const std::uint8_t> skip) {
+  const Box box = other.box();
+  if (built_.low == box.low && built_.high == box.high &&
+      sameWalls(triangles, x, v, box.low, box.high, skip))
+    return;
+  rebuild(triangles, x, v, box, skip);
+}
+
 void WallField::sortPieces() {
   std::vector<Piece> sorted;
   sorted.reserve(pieces_.size());

@@ -67,6 +67,10 @@ class WallField {
   void rebuild(std::span<const Triangle> triangles, std::span<const Vec3> positions,
                std::span<const Vec3> velocities, const Box& box,
                std::span<const std::uint8_t> skip);
+  /// The same walls in another field's box, so that no history but that field's shapes the pieces.
+  void follow(const WallField& other, std::span<const Triangle> triangles,
+              std::span<const Vec3> positions, std::span<const Vec3> velocities,
+              std::span<const std::uint8_t> skip);
 
   WallSample sample(const Vec3& p) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/bolus_file.h"
 
+#include "core/vec.h"
 #include "scene/json_reader.h"
 
 namespace swallowclip::scene {
@@ -10,6 +11,8 @@ namespace {
 constexpr double kMinDensity_kgm3 = 500, kMaxDensity_kgm3 = 3000;
 constexpr double kMinViscosity_Pas = 1e-4, kMaxViscosity_Pas = 1000;
 constexpr double kMaxConsistency_Pasn = 1e4;  // thick puree: some 100 Pa.s^n
+constexpr double kMaxTension_Nm = 0.5;        // water has 0.073, mercury 0.49
+constexpr double kRadPerDeg = kPi / 180;
 
 /// Names become parts of file names.
 bool isFileWord(const std::string& word) {
@@ -72,6 +75,13 @@ bolus::Fluid readFluid(const JsonNode& node) {
       node.number("minViscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.minViscosity_Pas);
   fluid.maxViscosity_Pas =
       node.number("maxViscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.maxViscosity_Pas);
+  fluid.surfaceTension_Nm = node.number("surface_tension_Nm", 0, kMaxTension_Nm, 0);
+  if (node.has("contact_angle_deg")) {
+    fluid.contactAngle_rad = node.number("contact_angle_deg", 0, 180) * kRadPerDeg;
+    if (fluid.surfaceTension_Nm == 0)
+      node.fail("\"contact_angle_deg\" without surface tension has no effect",
+                "Give \"surface_tension_Nm\" above 0 (water 0.073), or remove the angle.");
+  }
   if (const std::string problem = fluid.validate(); !problem.empty())
     node.fail(problem, "Correct the numbers of this bolus.");
   return fluid;

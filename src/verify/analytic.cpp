@@ -132,4 +132,17 @@ double huppertRound_m(double volume, double t, double g, double nu) {
   return 0.894 * std::pow(g * volume * volume * volume * t / (3 * nu), 0.125);
 }
 
+// Of a unit sphere, u its height over the centre, the cap is u > cos(angle): discs of pi (1 - u^2).
+double capSlenderness(double angle) {
+  const double c = std::cos(angle);
+  const auto volume = [](double u) { return u - u * u * u / 3; };
+  const auto height = [&](double u) { return u * u / 2 - std::pow(u, 4) / 4 - c * volume(u); };
+  const auto square = [](double u) {  // half the squared radius of each disc
+    return (u - 2 * u * u * u / 3 + std::pow(u, 5) / 5) / 2;
+  };
+  const double v = volume(1) - volume(c);
+  const double mean = (height(1) - height(c)) / v, gyration2 = (square(1) - square(c)) / v;
+  // at small angles, where differences lose their digits: a paraboloid's h / 3 and a / sqrt(3)
+  return v > 1e-12 ? mean / std::sqrt(gyration2) : angle / std::sqrt(12.0);
+}
 }  // namespace swallowclip::verify

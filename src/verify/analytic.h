@@ -29,4 +29,8 @@ double shapiroTube(double occlusion);
 double huppertPlane_m(double area_m2, double t, double g_ms2, double nu);
 double huppertRound_m(double volume_m3, double t, double g_ms2, double nu);
 
+/// Of a spherical cap that meets its floor under an angle (rad): mean height over the floor divided
+/// by the radius of gyration about the axis. Grows with the angle, from 0 at 0.
+double capSlenderness(double angle_rad);
+
 }  // namespace swallowclip::verify

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bolus/tension.h"
 #include "scene/bolus_file.h"
 #include "scene/json_reader.h"
 #include "verify/case.h"
@@ -273,7 +274,9 @@ Result<void> checkGeometry(const CaseDef& def) {
                         fmt::format("spacing of {:.3g} mm in a domain {:.3g} mm wide",
                                     spacing_m / kMm, least / kMm),
                         "Use a spacing of a tenth of the width or less.");
-    const double reach_m = 2 * bolus::supportPerSpacing(def.kernel) * spacing_m;
+    double reach_m = 2 * bolus::supportPerSpacing(def.kernel) * spacing_m;
+    if (def.fluid.surfaceTension_Nm > 0)
+      reach_m = std::max(reach_m, 2 * bolus::kTensionReach * spacing_m);
     for (int k = 0; k < 3; ++k)
       if (const double period_m = domain->period_m()[k]; period_m > 0 && period_m <= reach_m)
         return usageError("",

@@ -11,7 +11,7 @@
 namespace swallowclip::verify {
 namespace {
 // Walls of a periodic axis go on for this many spacings beyond both ends: more than the widest
-// kernel support (2.5) and one step.
+// kernel support (2.5; 3 of surface tension) and one step.
 constexpr double kBeyond = 4;
 constexpr double kMostTriangles = 1e6;  // of walls; a swallow has some 20 000
 constexpr double kAlmost = 1e-9;        // m; vertices this near a face belong to it

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bolus/tension.h"
 #include "verify/analytic.h"
 
 namespace swallowclip::verify {
@@ -118,12 +119,46 @@ double plugHalfWidth(const Snapshot& s) {
   return sw < 2 ? 0 : (sx - sy / slope) / sw;
 }
 
+/// Mean where surface tension itself no longer reaches, a particle's half more from the surface.
+double dropPressure_Pa(const Snapshot& s, const QuantityDef& q) {
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& p : s.positions) centre += p / static_cast<double>(s.positions.size());
+  const double volume_m3 = s.particleVolume_m3 * static_cast<double>(s.positions.size());
+  const double inner_m =
+      std::cbrt(3 * volume_m3 / (4 * kPi)) - (bolus::kTensionReach + 0.5) * s.spacing_m;
+  double sum = 0, n = 0;
+  for (std::size_t i = 0; i < s.positions.size(); ++i)
+    if (within(q, s.positions[i]) && (s.positions[i] - centre).norm() < inner_m)
+      sum += s.pressure_Pa[i], ++n;
+  return n > 0 ? sum / n : 0;
+}
+
+/// Of the spherical cap on the floor z = 0 whose mean height, over its radius of gyration about the
+/// axis, is that of the fluid: all particles have a say, not only those on top and at the rim.
+double contactAngle_rad(const Snapshot& s, const QuantityDef& q) {
+  const auto of = [&](int axis) {
+    return mean(s, q, [&](std::size_t i) { return s.positions[i][axis]; });
+  };
+  const double x = of(0), y = of(1);
+  const double square = mean(s, q, [&](std::size_t i) {
+    return std::pow(s.positions[i].x() - x, 2) + std::pow(s.positions[i].y() - y, 2);
+  });
+  const double wanted = of(2) / std::sqrt(std::max(square, 1e-300));
+  double low = 0, high = kPi;
+  for (int k = 0; k < 60; ++k) {
+    const double angle = (low + high) / 2;
+    (capSlenderness(angle) < wanted ? low : high) = angle;
+  }
+  return low;
+}
+
 struct Row {
   const char* name;
   Unit unit;
   double (*value)(const Snapshot&, const QuantityDef&);
 };
-constexpr Unit kMm{"mm", 1e3}, kMms{"mm/s", 1e3}, kPa{"Pa", 1}, kRatio{"-", 1};
+constexpr Unit kMm{"mm", 1e3}, kMms{"mm/s", 1e3}, kPa{"Pa", 1}, kRatio{"-", 1},
+    kDeg{"deg", 180 / kPi};
 
 const std::vector<Row>& rows() {
   static const std::vector<Row> table{
@@ -172,6 +207,8 @@ const std::vector<Row>& rows() {
        [](const Snapshot& s, const QuantityDef& q) {
          return mean(s, q, [&](std::size_t i) { return s.pressure_Pa[i]; });
        }},
+      {"drop-pressure", kPa, dropPressure_Pa},
+      {"contact-angle", kDeg, contactAngle_rad},
       {"kinetic-energy",
        {"uJ", 1e6},
        [](const Snapshot& s, const QuantityDef&) {

@@ -11,6 +11,10 @@
 
 namespace swallowclip::verify {
 namespace {
+// Pressure is measured 3.5 spacings deep (quantities.cpp): less than 1.5 beyond leaves a handful of
+// particles. Assumed (4.5 to 6).
+constexpr double kLeastBall = 5;
+
 /// What formulas ask of a case; kept alive by the closures made from it.
 struct Setting {
   CaseDef def;
@@ -86,6 +90,20 @@ constexpr Need kSidePiston{[](const CaseDef& d) {
                                     d.domain.shape == Shape::box && d.gravity_ms2.z() < 0;
                            },
                            "a piston along x or y, and gravity along -z"};
+constexpr Need kTension{[](const CaseDef& d) { return d.fluid.surfaceTension_Nm > 0; },
+                        "surface_tension_Nm above 0"};
+constexpr Need kBall{[](const CaseDef& d) {
+                       return d.fill.size() == 1 && d.fill[0].kind == FillKind::sphere &&
+                              d.fill[0].radius_m >= kLeastBall * d.spacing_m;
+                     },
+                     "one sphere of 5 spacings' radius at least"};
+constexpr Need kWeightless{[](const CaseDef& d) { return d.gravity_ms2.norm() == 0; },
+                           "gravity_ms2 [0, 0, 0]"};
+constexpr Need kFloor{[](const CaseDef& d) {
+                        return d.domain.shape == Shape::cylinder ||
+                               (d.domain.shape == Shape::box && !d.domain.periodic[2]);
+                      },
+                      "a floor at z = 0"};
 constexpr Need kYield{[](const CaseDef& d) { return d.fluid.yield_Pa > 0; }, "yield_Pa above 0"};
 
 struct Row {
@@ -285,6 +303,16 @@ const std::vector<Row>& rows() {
          const double bend = std::pow(s.def.motion.speed.final(), 2) / (2 * s.g());  // 1/m
          return h / 2 + bend * bend * std::pow(R, 4) / (24 * h);
        }},
+      {"laplace-pressure",
+       false,
+       {kTension, kBall, kWeightless},
+       [](const S& s, const Probe&) {
+         return 2 * s.fluid().surfaceTension_Nm / s.def.fill[0].radius_m;
+       }},
+      {"young-angle",
+       false,
+       {kTension, kFloor, kWeightless},
+       [](const S& s, const Probe&) { return s.fluid().contactAngle_rad; }},
       {"plug-half-width",
        false,
        {kYield, kForceX},

@@ -69,3 +69,21 @@ TEST(BolusFile, OwnFile) {
                 .find("lower-case letters"),
             std::string::npos);
 }
+
+TEST(BolusFile, SurfaceTensionIsReadWithItsAngle) {
+  const auto with = [](const std::string& more) {
+    return fileError(R"({"name": "oil", "density_kgm3": 920, "rheology": "newtonian",
+                         "viscosity_Pas": 0.07)" +
+                     more + "}");
+  };
+  EXPECT_EQ(with(R"(, "surface_tension_Nm": 0.03, "contact_angle_deg": 60)"), "accepted");
+  EXPECT_EQ(with(R"(, "surface_tension_Nm": 0.03)"), "accepted");
+  EXPECT_NE(with(R"(, "surface_tension_Nm": -0.03)").find("-0.03 is outside 0 to 0.5"),
+            std::string::npos);
+  EXPECT_NE(with(R"(, "surface_tension_Nm": 0.03, "contact_angle_deg": 190)")
+                .find("190 is outside 0 to 180"),
+            std::string::npos);
+  const std::string alone = with(R"(, "contact_angle_deg": 60)");
+  EXPECT_NE(alone.find("without surface tension has no effect"), std::string::npos) << alone;
+  EXPECT_NE(alone.find("Give \"surface_tension_Nm\""), std::string::npos) << alone;
+}

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/vec.h"
+#include "verify/quantities.h"
 
 using namespace swallowclip;
 using namespace swallowclip::verify;
@@ -106,6 +107,52 @@ TEST(Analytic, PeristalticFlowMatchesQuadrature) {
   EXPECT_EQ(shapiroPlane(0), 0);
   EXPECT_NEAR(shapiroPlane(1), 1, 1e-15) << "a wave that shuts carries all that is before it";
   EXPECT_NEAR(shapiroTube(1), 1.5, 1e-15);
+}
+
+TEST(Analytic, CapsAreAsSlenderAsTheirSlices) {
+  for (const double angle : {0.3, 1.0, kPi / 2, 2.5, 3.1}) {
+    double volume = 0, height = 0, square = 0;
+    const int n = 20000;
+    const double floor = std::cos(angle);
+    for (int k = 0; k < n; ++k) {
+      const double u = floor + (1 - floor) * (k + 0.5) / n, disc = 1 - u * u;
+      volume += disc;
+      height += disc * (u - floor);
+      square += disc * disc / 2;
+    }
+    EXPECT_NEAR(capSlenderness(angle), height / volume / std::sqrt(square / volume), 1e-6);
+  }
+  EXPECT_NEAR(capSlenderness(kPi / 2), 3. / 8 / std::sqrt(2. / 5), 1e-12) << "half a ball";
+  EXPECT_LT(capSlenderness(1e-6), capSlenderness(1e-2));
+}
+
+// On a lattice that fills a known cap, and a pressure that differs beyond the midst of a ball.
+TEST(Quantities, AngleAndPressureOfDropsAreThoseOfTheirShape) {
+  CaseDef def;
+  for (const double angle : {kPi / 3, kPi / 2, 2.5}) {
+    Snapshot s;
+    s.def = &def;
+    s.spacing_m = 2e-4;
+    const double R = 5e-3, floor = R * std::cos(angle);
+    for (double z = s.spacing_m / 2; z < R - floor; z += s.spacing_m)
+      for (double y = -R; y < R; y += s.spacing_m)
+        for (double x = -R; x < R; x += s.spacing_m)
+          if (Vec3(x, y, z + floor).norm() < R) s.positions.emplace_back(x + 0.1, y - 0.2, z);
+    EXPECT_NEAR(measureSeries({.kind = "contact-angle"}, s), angle, 0.01);
+  }
+  Snapshot s;
+  s.def = &def;
+  s.spacing_m = 1e-3;
+  s.particleVolume_m3 = 1e-9;
+  for (int k = -9; k < 9; ++k)
+    for (int j = -9; j < 9; ++j)
+      for (int i = -9; i < 9; ++i)
+        if (const Vec3 p = 1e-3 * (Vec3(i, j, k) + Vec3::Constant(0.5)); p.norm() < 8e-3) {
+          s.positions.push_back(p);
+          s.pressure_Pa.push_back(p.norm() < 4.4e-3 ? 20 : 100);
+        }
+  s.densityRatio.assign(s.positions.size(), 1.0);
+  EXPECT_EQ(measureSeries({.kind = "drop-pressure"}, s), 20) << "3.5 spacings deep: 4.5 mm";
 }
 
 // The profiles of Huppert's similarity solutions hold the volume that they started with.

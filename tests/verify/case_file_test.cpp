@@ -62,6 +62,12 @@ TEST(CaseFile, RefusesWhatCannotBeRun) {
   expectRefused(spoilt("{\"kind\": \"sphere\", \"centre_mm\": [10, 10, 30], \"radius_mm\": 5}", ""),
                 "fill");
   expectRefused(spoilt("[20, 20, 40]}", "[3, 20, 40], \"periodic\": \"x\"}"), "a period of 3 mm");
+  const std::string fluid = "\"viscosity_Pas\": 1";
+  expectRefused(spoilt(fluid, fluid + ", \"surface_tension_Nm\": -0.07"), "surface_tension_Nm");
+  expectRefused(spoilt(fluid, fluid + ", \"surface_tension_Nm\": 0.07, \"contact_angle_deg\": 181"),
+                "contact_angle_deg");
+  expectRefused(spoilt(fluid, fluid + ", \"contact_angle_deg\": 60"), "without surface tension");
+  expectRefused(spoilt("free-fall-speed", "laplace-pressure"), "needs surface_tension_Nm above 0");
   expectRefused(kGoodCase.substr(0, kGoodCase.size() / 2), "");
 }
 
