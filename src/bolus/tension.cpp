@@ -45,13 +45,10 @@ void Tension::add(const Flow& flow, const Neighbours& pairs, double attraction) 
   half_.assign(n + 1, static_cast<float>(attraction / 2));
   transmitted_.assign(n + 1, 0.f);
   force_.resize(3 * n);
-  const PairLists lists{pairs.start.data(), pairs.index.data(), pairs.gx.data(), pairs.gy.data(),
-                        pairs.gz.data()};
-  const GradientSweep gradient{lists, half_.data(), force_.data()};
-  const StressSweep stress{lists, pairs.r.data(), half_.data(), transmitted_.data()};
+  const GradientSweep gradient{pairs.lists(), half_.data(), force_.data(), pairs.r.data(),
+                               transmitted_.data()};
   flow.sweep([&](int begin, int end, int) {
     gradient.run(begin, end);
-    stress.run(begin, end);
     for (int i = begin; i < end; ++i) {
       acceleration_[pairs.id[i]] += Vec3(&force_[3 * i]);
       stress_[pairs.id[i]] -= transmitted_[i];
@@ -62,7 +59,7 @@ void Tension::add(const Flow& flow, const Neighbours& pairs, double attraction) 
 void Tension::measure(const Flow& flow, std::span<const Vec3> positions,
                       std::span<const std::uint8_t> active, const Walls& walls,
                       const Vec3& period_m) {
-  neighbours_.build(positions, active, table_, std::pow(spacing_m_, 3), period_m, flow.pool);
+  neighbours_.build(positions, active, table_, std::pow(spacing_m_, 3), period_m, 0, flow.pool);
   acceleration_.assign(positions.size(), Vec3::Zero());
   stress_.assign(positions.size(), 0.0);
   add(flow, neighbours_, attraction_m2s2_);
