@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000002;  // "SWBC", layout 2
+constexpr std::uint64_t kMark = 0x53574243'00000003;  // "SWBC", layout 3
 
 class Writer {
  public:
@@ -95,6 +95,7 @@ void all(Archive& a, Impl& s) {
   a(s.caps);
   a(s.shutBefore);
   a(s.skipped);
+  s.coating.archive(a);
 }
 
 /// What a state must fit: counts and the numbers that shape the flow.
@@ -128,6 +129,7 @@ std::uint64_t kindOf(const BolusDef& d, std::size_t triangles) {
                             f.lambda_s,
                             f.minViscosity_Pas,
                             f.maxViscosity_Pas,
+                            f.coatingTension_Nm,
                             static_cast<double>(triangles)};
   return stateDigest(numbers, sizeof numbers);
 }

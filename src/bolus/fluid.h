@@ -24,6 +24,10 @@ struct Fluid {
   double eta0_Pas = 0, etaInf_Pas = 0.003, lambda_s = 10;   ///< Carreau (clinical-reference 4)
   double minViscosity_Pas = 0.002, maxViscosity_Pas = 100;  ///< clip (clinical-reference 4)
 
+  /// Surface tension (N/m) that sets how thick a film it leaves on walls (bolus/coating.h); 0:
+  /// none.
+  double coatingTension_Nm = 0;
+
   /// "" when every number is usable, else what is wrong with which field.
   std::string validate() const;
 };

@@ -64,6 +64,9 @@ struct Solver::Impl {
   void leaveInSlits(double dt_s);
   void move(double dt_s, Substep& report);
   int clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const;
+  void findNeighbours();  ///< and the densities
+  void coatWalls(const Substep& step);
+  bool joins(int i, const Vec3& place);
   void measure(Substep& s);
   std::string wallsAt(int particle) const;
 
@@ -98,6 +101,7 @@ struct Solver::Impl {
   Shifting shifting;
   Viscosity viscosity;
   Wcsph wcsph;
+  Coating coating;
 
   // The skin's triangles, then the caps of its two branches (made when one first shuts).
   std::vector<Triangle> wallTriangles;

@@ -48,6 +48,7 @@ Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
       volume_m3(std::pow(d.spacing_m, 3) /
                 ((d.full || d.solver == SolverKind::wcsph ? 1 : kRelaxedSum) *
                  kernel.latticeSum(d.spacing_m))),
+      coating(d.fluid, d.gravity_ms2.norm(), d.spacing_m),
       filmDrainage_s(
           drainagePerAcceleration_s(d.fluid, kFilmThickness * d.spacing_m, d.gravity_ms2.norm())) {}
 
@@ -68,6 +69,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   active.assign(n, 1);
   projection.resize(static_cast<int>(n));
   wcsph.start();
+  coating.start(motion->triangles.size(), n);
   lastStep_s = 0;
   projection.tolerances = {def.densityTolerance, def.rateTolerance};
   projection.full = def.full;
@@ -81,7 +83,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
 double Solver::Impl::chooseStep_s(double longest_s) {
   double fastest = 0, wall = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
-    if (particles.state[i] == State::swallowed) continue;
+    if (isGone(particles.state[i])) continue;
     fastest = std::max(fastest, particles.velocities[i].norm());
     if (active[i]) wall = std::max(wall, walls[i].normalSpeed_ms);
   }
@@ -201,6 +203,7 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
     dt_s = projectInReach(dt_s, report);
   report.length_s = lastStep_s = dt_s;
   move(dt_s, report);
+  coatWalls(report);
   measure(report);
   return report;
 }
@@ -223,7 +226,7 @@ void Solver::Impl::move(double dt_s, Substep& report) {
   report.clamped = clampSpeeds(dt_s, v) + clampSpeeds(dt_s, moving);
   carried.resize(v.size());
   for (std::size_t i = 0; i < v.size(); ++i) {
-    if (particles.state[i] == State::swallowed) continue;
+    if (isGone(particles.state[i])) continue;
     const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
     carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
     if (particles.state[i] == State::film) v[i] = moving[i] = filmVelocity_ms(static_cast<int>(i));

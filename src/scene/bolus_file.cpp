@@ -9,7 +9,8 @@ namespace {
 // paste.
 constexpr double kMinDensity_kgm3 = 500, kMaxDensity_kgm3 = 3000;
 constexpr double kMinViscosity_Pas = 1e-4, kMaxViscosity_Pas = 1000;
-constexpr double kMaxConsistency_Pasn = 1e4;  // thick puree: some 100 Pa.s^n
+constexpr double kMinTension_Nm = 1e-3, kMaxTension_Nm = 0.5;  // bolus/fluid.cpp
+constexpr double kMaxConsistency_Pasn = 1e4;                   // thick puree: some 100 Pa.s^n
 
 /// Names become parts of file names.
 bool isFileWord(const std::string& word) {
@@ -72,6 +73,9 @@ bolus::Fluid readFluid(const JsonNode& node) {
       node.number("minViscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.minViscosity_Pas);
   fluid.maxViscosity_Pas =
       node.number("maxViscosity_Pas", kMinViscosity_Pas, kMaxViscosity_Pas, fluid.maxViscosity_Pas);
+  if (node.has("coating"))
+    fluid.coatingTension_Nm =
+        node.object("coating").number("surface_tension_Nm", kMinTension_Nm, kMaxTension_Nm);
   if (const std::string problem = fluid.validate(); !problem.empty())
     node.fail(problem, "Correct the numbers of this bolus.");
   return fluid;

@@ -8,6 +8,7 @@
 #include "verify/analytic.h"
 #include "verify/domain.h"
 #include "verify/fill.h"
+#include "verify/film.h"
 
 namespace swallowclip::verify {
 namespace {
@@ -87,6 +88,21 @@ constexpr Need kSidePiston{[](const CaseDef& d) {
                            },
                            "a piston along x or y, and gravity along -z"};
 constexpr Need kYield{[](const CaseDef& d) { return d.fluid.yield_Pa > 0; }, "yield_Pa above 0"};
+constexpr Need kCoats{[](const CaseDef& d) {
+                        return d.fluid.coatingTension_Nm > 0 &&
+                               d.fluid.model == bolus::RheologyModel::newtonian;
+                      },
+                      "a Newtonian fluid with \"coating\""};
+constexpr Need kRecedes{[](const CaseDef& d) {
+                          return d.motion.kind == MotionKind::piston && d.motion.axis == 0 &&
+                                 d.fill[0].kind == FillKind::block && d.gravity_ms2.z() < 0;
+                        },
+                        "a block of fluid, a piston along x and gravity along -z"};
+constexpr Need kPlug{[](const CaseDef& d) {
+                       return d.domain.shape == Shape::cylinder &&
+                              d.fill[0].kind == FillKind::cylinder;
+                     },
+                     "a cylinder of fluid in a cylinder"};
 
 struct Row {
   const char* name;
@@ -203,6 +219,22 @@ const std::vector<Row>& rows() {
          return s.def.motion.speed.speed(p.time_s) * p.at.head<2>().norm() / (2 * h) *
                 squeezeParabola(share);
        }},
+      {"level-film",
+       true,
+       {kCoats, kRecedes},
+       [](const S& s, const Probe& p) { return filmOfLevel_m(s.def, p.at.z()); }},
+      {"plug-film",
+       true,
+       {kCoats, kPlug},
+       [](const S& s, const Probe& p) { return filmOfPlug_m(s.def, p.at.z()); }},
+      {"level-speed",
+       true,
+       {kRecedes},
+       [](const S& s, const Probe& p) { return contactLineSpeed_ms(s.def, p.at.z()); }},
+      {"plug-speed",
+       true,
+       {kPlug},
+       [](const S& s, const Probe& p) { return contactLineSpeed_ms(s.def, p.at.z()); }},
       // Series: functions of time.
       {"free-fall-height",
        false,
