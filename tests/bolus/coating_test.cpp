@@ -82,7 +82,6 @@ TEST(Coating, GoesOnToTheBitWithAnyNumberOfThreads) {
     EXPECT_EQ(resumed.digest(), whole.digest()) << threads;
     EXPECT_EQ(resumed.coating().volume_m3(), whole.coating().volume_m3()) << threads;
     EXPECT_EQ(resumed.coating().lent_m3(), whole.coating().lent_m3()) << threads;
-    EXPECT_EQ(resumed.save(), whole.save()) << threads;
   }
 }
 
