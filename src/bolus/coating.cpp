@@ -225,28 +225,35 @@ void Coating::takeUp(const Scene& s, int k, bool revives) {
   }
 }
 
-// Walls that close squeeze out what is thicker than half their gap: into fluid that is there, else
-// along the skin to where it is wider, ahead of the wave that shuts them.
+// Walls that close squeeze out what is thicker than half their gap, and what is thicker than any
+// film spreads: into fluid that is there, else along the skin to where there is most room, which
+// is ahead of the wave that shuts the walls.
 void Coating::squeeze(const Scene& s, int k) {
-  const auto gapAt = [&](int at) {
+  const auto over_m = [&](int at) {  // thicker than may be; below zero: room
     if (std::isnan(narrow_m_[at])) narrow_m_[at] = narrowGap_m(s, face(s, at));
-    return narrow_m_[at];
+    const double area_m2 = face(s, at).area_m2;
+    const double most_m = std::min(kThickest * spacing_m_, std::max(0.0, narrow_m_[at] / 2));
+    return area_m2 > 0 ? volume_m3_[at] / area_m2 - most_m : INFINITY;
   };
-  const double gap = gapAt(k);
-  if (gap == INFINITY) return;
-  const double most_m3 = std::max(0.0, gap / 2) * face(s, k).area_m2;
-  if (!(volume_m3_[k] > most_m3)) return;
-  if (nearest_m_[k] < kLends * spacing_m_) takeUp(s, k, false);
-  int widest = -1;
-  double width = gap;
+  double over = over_m(k);
+  if (!(over > 0)) return;
+  if (nearest_m_[k] < kLends * spacing_m_) takeUp(s, k, false), over = over_m(k);
+  int roomiest = -1;
+  double least = over;
   for (const int j : beside_[k]) {
     if (j < 0 || (!s.skipped.empty() && s.skipped[j])) continue;
-    if (const double there = gapAt(j); there > width) width = there, widest = j;
+    if (const double there = over_m(j); there < least) least = there, roomiest = j;
   }
-  const double moved_m3 = volume_m3_[k] - most_m3;
-  if (widest < 0 || !(moved_m3 > 0)) return;
+  if (roomiest < 0 || !(over > 0)) return;
+  // no more than what makes both alike
+  const double area_m2 = face(s, k).area_m2, there_m2 = face(s, roomiest).area_m2;
+  const double whole =
+      std::isfinite(over)
+          ? std::min(over * area_m2, (over - least) * area_m2 * there_m2 / (area_m2 + there_m2))
+          : volume_m3_[k];
+  const double moved_m3 = std::min(volume_m3_[k], whole);
   volume_m3_[k] -= moved_m3;
-  volume_m3_[widest] += moved_m3;
+  volume_m3_[roomiest] += moved_m3;
 }
 
 void Coating::findGaps(const Scene& s) {
