@@ -95,6 +95,7 @@ void all(Archive& a, Impl& s) {
   a(s.caps);
   a(s.shutBefore);
   a(s.skipped);
+  s.coating.archive(a);
 }
 
 /// What a state must fit: counts and the numbers that shape the flow.
@@ -131,6 +132,7 @@ std::uint64_t kindOf(const BolusDef& d, std::size_t triangles) {
                             f.maxViscosity_Pas,
                             f.surfaceTension_Nm,
                             f.contactAngle_rad,
+                            f.coatingTension_Nm,
                             static_cast<double>(triangles)};
   return stateDigest(numbers, sizeof numbers);
 }

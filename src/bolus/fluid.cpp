@@ -14,6 +14,8 @@ constexpr std::array<const char*, 4> kNames{"newtonian", "power-law", "carreau",
 // Below this shear rate the laws are read at it: they diverge at rest. 1e-3 1/s, assumed
 // (1e-4 to 1e-2); the clip decides there anyway.
 constexpr double kLowestShearRate_s = 1e-3;
+// Water with soap has 0.025, saliva 0.04 to 0.06, water 0.072, mercury 0.49 N/m.
+constexpr double kLeastTension_Nm = 1e-3, kMostTension_Nm = 0.5;
 }  // namespace
 
 const char* name(RheologyModel model) {
@@ -42,6 +44,9 @@ std::string Fluid::validate() const {
     return bad("surfaceTension_Nm", surfaceTension_Nm, "0 to 1");
   if (!(contactAngle_rad >= 0 && contactAngle_rad <= kPi))
     return bad("contactAngle_rad", contactAngle_rad, "0 to pi");
+  if (coatingTension_Nm != 0 &&
+      !(coatingTension_Nm >= kLeastTension_Nm && coatingTension_Nm <= kMostTension_Nm))
+    return bad("coatingTension_Nm", coatingTension_Nm, "0 (no coating), or 0.001 to 0.5");
   if (model == RheologyModel::newtonian && !(viscosity_Pas > 0 && viscosity_Pas <= 1e4))
     return bad("viscosity_Pas", viscosity_Pas, "0 to 10000");
   if (model == RheologyModel::newtonian) return "";

@@ -28,6 +28,10 @@ struct Fluid {
   /// draw the fluid on nor shed it. Of no effect without surface tension.
   double contactAngle_rad = 1.5707963267948966;
 
+  /// Surface tension (N/m) that sets how thick a film it leaves on walls (bolus/coating.h); 0:
+  /// none.
+  double coatingTension_Nm = 0;
+
   /// "" when every number is usable, else what is wrong with which field.
   std::string validate() const;
 };

@@ -33,7 +33,7 @@ void Solver::Impl::evaluateWalls(double t_s) {
   if (frozen) std::fill(wallVelocities.begin(), wallVelocities.end(), Vec3::Zero());
   Vec3 low = Vec3::Constant(INFINITY), high = -low;
   for (std::size_t i = 0; i < particles.positions.size(); ++i) {
-    if (particles.state[i] == State::swallowed) continue;
+    if (isGone(particles.state[i])) continue;
     low = low.cwiseMin(particles.positions[i]);
     high = high.cwiseMax(particles.positions[i]);
   }
@@ -54,7 +54,7 @@ void Solver::Impl::shutBranches(double t_s) {
   for (int b : {1, 2}) {
     shut[b] = motion->sealed(t_s, b);
     for (std::size_t i = 0; shut[b] && i < particles.branch.size(); ++i)
-      shut[b] = particles.state[i] == State::swallowed || particles.branch[i] != b;
+      shut[b] = isGone(particles.state[i]) || particles.branch[i] != b;
   }
   if (shut == shutBefore) return;
   shutBefore = shut;
@@ -85,7 +85,7 @@ int Solver::Impl::pushInside() {
   return static_cast<int>(pool.sumChunks(n, kWallChunk, [&](int begin, int end) {
     double rescued = 0;
     for (int i = begin; i < end; ++i)
-      if (particles.state[i] != State::swallowed) {
+      if (!isGone(particles.state[i])) {
         rescued += followContacts(i) ? 0.0 : findContacts(i);
         keepOutOfSlits(i);
         keepOnWall(i);
@@ -116,7 +116,7 @@ void Solver::Impl::updateStates() {
   takenUp.clear();
   for (std::size_t i = 0; i < active.size(); ++i) {
     State& s = particles.state[i];
-    if (s != State::swallowed) {
+    if (!isGone(s)) {
       const bool wasFilm = s == State::film;
       const bool betweenCrossed = !contacts[i].empty() && contacts[i][0].distance_m < 0;
       s = betweenCrossed || localGap_m(contacts[i]) < kFilmGap * def.spacing_m ||
@@ -236,7 +236,7 @@ void Solver::Impl::updatePath(bool all) {
   const double nearEnd = def.swallowedAt_s_m - kNearEnd_m;
   pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
-      if (particles.state[i] == State::swallowed) continue;
+      if (isGone(particles.state[i])) continue;
       int k = contacts[i].empty() ? walls[i].nearestTriangle : contacts[i][0].triangle;
       const Vec3& p = particles.positions[i];
       if (k < 0 && !all && particles.s_m[i] < nearEnd) continue;
@@ -254,7 +254,7 @@ void Solver::Impl::updatePath(bool all) {
   if (m.s_m.empty() || frozen) return;
   for (std::size_t i = 0; i < active.size(); ++i) {
     const bool insideLumen = contacts[i].empty() || contacts[i][0].distance_m >= 0;
-    if (particles.state[i] == State::swallowed || !insideLumen) continue;
+    if (isGone(particles.state[i]) || !insideLumen) continue;
     if (particles.s_m[i] < def.swallowedAt_s_m || particles.branch[i] != 0) continue;
     particles.state[i] = State::swallowed;
     particles.velocities[i].setZero();
@@ -273,6 +273,7 @@ void Solver::Impl::findNeighbours() {
   double skin_m = std::clamp(kListSteps * step_m, kLeastSkin * def.spacing_m, longest_m);
   if (kLeastListSteps * step_m > longest_m) skin_m = 0;
   neighbours.build(particles.positions, active, table, volume_m3, def.period_m, skin_m, pool);
+  findDensities();
 }
 
 void Solver::Impl::wrapPeriods() {
@@ -291,10 +292,16 @@ int Solver::Impl::meetWalls(double t_s) {
   sampleWalls();
   updateStates();
   updatePath(false);
-  if (!neighbours.follow(particles.positions, active, table, volume_m3, pool)) findNeighbours();
+  if (neighbours.follow(particles.positions, active, table, volume_m3, pool))
+    findDensities();
+  else
+    findNeighbours();
+  return rescued;
+}
+
+void Solver::Impl::findDensities() {
   for (std::size_t i = 0; i < active.size(); ++i)
     particles.densityRatio[i] =
         active[i] ? neighbours.sumW[neighbours.slot[i]] + walls[i].lambda : 1.0;
-  return rescued;
 }
 }  // namespace swallowclip::bolus

@@ -206,7 +206,7 @@ void Solver::Impl::finishFrame() {
   columns.build(motion->triangles, wallPositions);
   escapedNow = 0;
   for (std::size_t i = 0; i < active.size(); ++i)
-    escapedNow += particles.state[i] != State::swallowed && escaped(particles.positions[i]);
+    escapedNow += !isGone(particles.state[i]) && escaped(particles.positions[i]);
   stats.escaped = std::max(stats.escaped, escapedNow);
   findNeighbours();  // here, so that a run that goes on from a checkpoint has the same lists
 }
@@ -262,15 +262,38 @@ const Stats& Solver::stats() const {
 double Solver::particleVolume_m3() const {
   return std::pow(impl_->def.spacing_m, 3);
 }
+const Coating& Solver::coating() const {
+  return impl_->coating;
+}
+std::vector<double> Solver::coatingThickness_m() const {
+  const Impl& s = *impl_;
+  std::vector<double> thickness_m = s.coating.volume_m3();
+  for (std::size_t k = 0; k < thickness_m.size(); ++k) {
+    const Triangle& t = s.motion->triangles[k];
+    const Vec3& corner = s.wallPositions[t[0]];
+    const Vec3 cross = (s.wallPositions[t[1]] - corner).cross(s.wallPositions[t[2]] - corner);
+    if (thickness_m[k] > 0 && cross.norm() > 0) thickness_m[k] /= cross.norm() / 2;
+  }
+  return thickness_m;
+}
 
 Ledger Solver::ledger() const {
   Ledger l;
-  l.start = static_cast<std::int32_t>(impl_->particles.state.size());
-  for (State s : impl_->particles.state) {
+  const std::vector<State>& states = impl_->particles.state;
+  const std::vector<double>& lent_m3 = impl_->coating.lent_m3();
+  l.start = static_cast<std::int32_t>(states.size());
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const State s = states[i];
     l.fluid += s == State::fluid;
     l.film += s == State::film;
     l.swallowed += s == State::swallowed;
+    l.coating += s == State::coating;
+    const double own_m3 = particleVolume_m3() - (lent_m3.empty() ? 0 : lent_m3[i]);
+    l.start_m3 += particleVolume_m3();
+    l.particles_m3 += own_m3;
+    if (s == State::swallowed) l.swallowed_m3 += own_m3;
   }
+  for (const double volume_m3 : impl_->coating.volume_m3()) l.coating_m3 += volume_m3;
   l.escaped = impl_->escapedNow;
   return l;
 }

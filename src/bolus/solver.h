@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bolus/coating.h"
 #include "bolus/fluid.h"
 #include "bolus/kernels.h"
 #include "bolus/seeding.h"
@@ -51,7 +52,12 @@ struct BolusDef {
   std::string validate() const;  ///< "" or what is wrong
 };
 
-enum class State : std::uint8_t { fluid = 0, film = 1, swallowed = 2 };
+/// coating: it has lent all of its volume to the walls (bolus/coating.h) and lies where it did so.
+enum class State : std::uint8_t { fluid = 0, film = 1, swallowed = 2, coating = 3 };
+/// Takes no part in anything any more, or for now.
+constexpr bool isGone(State s) {
+  return s == State::swallowed || s == State::coating;
+}
 
 /// Flat arrays of one length.
 struct Particles {
@@ -88,7 +94,10 @@ struct RelaxReport {
 };
 /// Particle counts; they always add up to start. Escaped ones are counted in their state too.
 struct Ledger {
-  std::int32_t start = 0, fluid = 0, film = 0, swallowed = 0, escaped = 0;
+  std::int32_t start = 0, fluid = 0, film = 0, swallowed = 0, escaped = 0, coating = 0;
+  /// Volumes: of all particles at the start; of what they have not lent; on the walls. The last two
+  /// always add up to the first.
+  double start_m3 = 0, particles_m3 = 0, swallowed_m3 = 0, coating_m3 = 0;
 };
 
 class Solver {
@@ -113,6 +122,9 @@ class Solver {
   const Stats& stats() const;
   Ledger ledger() const;
   double particleVolume_m3() const;
+  const Coating& coating() const;
+  /// Per skin triangle, over its area of now; empty when the fluid coats nothing.
+  std::vector<double> coatingThickness_m() const;
   /// All that the next step depends on, for a solver of the same definition and motion.
   std::string save() const;
   /// Goes on where save() was called, to the bit. Errors when the bytes are damaged or belong to

@@ -46,7 +46,8 @@ struct Solver::Impl {
   void evaluateWalls(double t_s);
   void shutBranches(double t_s);
   void wrapPeriods();
-  void findNeighbours();
+  void findNeighbours();  ///< and the densities
+  void findDensities();
   bool escaped(const Vec3& p) const;
   int pushInside();
   void keepOutOfSlits(int i);
@@ -67,6 +68,8 @@ struct Solver::Impl {
   void leaveInSlits(double dt_s);
   void move(double dt_s, Substep& report);
   int clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const;
+  void coatWalls(const Substep& step);
+  bool joins(int i, const Vec3& place);
   void measure(Substep& s);
   std::string wallsAt(int particle) const;
 
@@ -103,6 +106,7 @@ struct Solver::Impl {
   Viscosity viscosity;
   Wcsph wcsph;
   std::optional<Tension> tension;  // without surface tension: none
+  Coating coating;
 
   // The skin's triangles, then the caps of its two branches (made when one first shuts).
   std::vector<Triangle> wallTriangles;

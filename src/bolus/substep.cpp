@@ -49,6 +49,7 @@ Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
       volume_m3(std::pow(d.spacing_m, 3) /
                 ((d.full || d.solver == SolverKind::wcsph ? 1 : kRelaxedSum) *
                  kernel.latticeSum(d.spacing_m))),
+      coating(d.fluid, d.gravity_ms2.norm(), d.spacing_m),
       filmDrainage_s(
           drainagePerAcceleration_s(d.fluid, kFilmThickness * d.spacing_m, d.gravity_ms2.norm())) {
   if (d.fluid.surfaceTension_Nm > 0) tension.emplace(d.fluid, kernel, d.spacing_m);
@@ -72,6 +73,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   lastNearest.assign(n, -1);
   projection.resize(static_cast<int>(n));
   wcsph.start();
+  coating.start(motion->triangles.size(), n);
   lastStep_s = 0;
   projection.tolerances = {def.densityTolerance, def.rateTolerance, def.solveShare};
   projection.full = def.full;
@@ -85,7 +87,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
 double Solver::Impl::chooseStep_s(double longest_s) {
   double fastest = 0, wall = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
-    if (particles.state[i] == State::swallowed) continue;
+    if (isGone(particles.state[i])) continue;
     fastest = std::max(fastest, particles.velocities[i].norm());
     if (active[i]) wall = std::max(wall, walls[i].normalSpeed_ms);
   }
@@ -216,6 +218,7 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
     dt_s = projectInReach(dt_s, report);
   report.length_s = lastStep_s = dt_s;
   move(dt_s, report);
+  coatWalls(report);
   measure(report);
   return report;
 }
@@ -242,7 +245,7 @@ void Solver::Impl::move(double dt_s, Substep& report) {
   pool.forChunks(n, kMoveChunk, [&](int begin, int end, int chunk) {
     auto& [fastest, broken] = parts[chunk];
     for (int i = begin; i < end; ++i) {
-      if (particles.state[i] == State::swallowed) continue;
+      if (isGone(particles.state[i])) continue;
       const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
       carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
       if (particles.state[i] == State::film) v[i] = moving[i] = filmVelocity_ms(i);

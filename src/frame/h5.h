@@ -121,6 +121,8 @@ class Reader {
   double number(const std::string& owner, const std::string& name, double absent);
   int whole(const std::string& owner, const std::string& name);
 
+  /// Whether a data set is there that need not be.
+  bool has(const std::string& path) { return fine() && linked(path); }
   bool fine() const { return !error_; }
   void fail(const std::string& place, const std::string& problem);
   Error error() const { return *error_; }

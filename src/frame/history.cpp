@@ -172,11 +172,12 @@ void checkBolus(Checker& c, const History& h) {
   c.perFrame("bolus s_m", b.s_m, frames, particles, numbers);
   c.perFrame("bolus state", b.state, frames, particles,
              [&](const std::string& place, const auto& row) {
-               c.words(place, row, ParticleState::swallowed);
+               c.words(place, row, ParticleState::coating);
              });
   c.perFrame(
       "bolus region", b.region, frames, particles,
       [&](const std::string& place, const auto& row) { c.words(place, row, Region::swallowed); });
+  if (!b.lentShare.empty()) c.perFrame("bolus lentShare", b.lentShare, frames, particles, numbers);
   if (!h.ledger.empty()) c.count("ledger", h.ledger.size(), h.time_s.size());
 }
 
@@ -278,6 +279,7 @@ std::uint64_t History::digest(int frame) const {
   d = addDigest(d, bolus.densityRatio, frame);
   d = addDigest(d, bolus.state, frame);
   d = addDigest(d, bolus.region, frame);
-  return addDigest(d, bolus.s_m, frame);
+  d = addDigest(d, bolus.s_m, frame);
+  return addDigest(d, bolus.lentShare, frame);
 }
 }  // namespace swallowclip::frame

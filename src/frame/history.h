@@ -14,7 +14,11 @@ namespace swallowclip::frame {
 
 inline constexpr int kHistoryVersion = 1;
 
-enum class ParticleState : std::uint8_t { fluid = 0, film = 1, swallowed = 2 };
+enum class ParticleState : std::uint8_t { fluid = 0, film = 1, swallowed = 2, coating = 3 };
+/// Neither swallowed nor lent to the walls' coating as a whole.
+constexpr bool isThere(ParticleState state) {
+  return state == ParticleState::fluid || state == ParticleState::film;
+}
 enum class Region : std::uint8_t {
   oral = 0,
   oropharynx,
@@ -61,7 +65,7 @@ struct SkinTrack {
 };
 
 /// [frame][particle]; particle k is the same one in every frame; a swallowed one stays where it
-/// crossed the UES plane.
+/// crossed the UES plane, one that has become coating where it did so.
 struct BolusTrack {
   double particleVolume_m3 = 0;
   std::vector<std::vector<Vec3f>> positions, velocities;
@@ -69,6 +73,14 @@ struct BolusTrack {
   std::vector<std::vector<ParticleState>> state;
   std::vector<std::vector<Region>> region;
   std::vector<std::vector<float>> s_m;  ///< path coordinate of the nearest skin point
+  /// Share of its volume that lies on the walls (SkinTrack::film_m); empty when they are not
+  /// coated.
+  std::vector<std::vector<float>> lentShare;
+
+  /// What a particle still has.
+  double volume_m3(int frame, std::size_t particle) const {
+    return particleVolume_m3 * (lentShare.empty() ? 1.0 : 1.0 - lentShare[frame][particle]);
+  }
 };
 
 struct LandmarkTrack {

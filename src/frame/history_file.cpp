@@ -115,6 +115,8 @@ void writeBolus(h5::Writer& w, const BolusTrack& b, hsize_t frames) {
   w.data("/bolus/s_m", {frames, particles}, flatten<float>(b.s_m));
   w.data("/bolus/state", {frames, particles}, flatten<std::uint8_t>(b.state));
   w.data("/bolus/region", {frames, particles}, flatten<std::uint8_t>(b.region));
+  if (!b.lentShare.empty())
+    w.data("/bolus/lent_share", {frames, particles}, flatten<float>(b.lentShare));
 }
 
 void writeTracks(h5::Writer& w, const History& h) {

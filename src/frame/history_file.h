@@ -20,13 +20,15 @@
 //                velocities [F,V,3], film_m [F,T] or [0,T]
 //   /bolus       @particle_volume_m3 (d), id [N] (i), positions [F,N,3], velocities [F,N,3],
 //                density_ratio [F,N], s_m [F,N],
-//                state [F,N] (b: 0 fluid, 1 film, 2 swallowed), region [F,N] (b: 0 oral,
-//                1 oropharynx, 2 nasopharynx, 3 hypopharynx, 4 larynx, 5 esophagus, 6 swallowed)
+//                state [F,N] (b: 0 fluid, 1 film, 2 swallowed, 3 coating), region [F,N] (b: 0 oral,
+//                1 oropharynx, 2 nasopharynx, 3 hypopharynx, 4 larynx, 5 esophagus, 6 swallowed),
+//                lent_share [F,N] (of its volume, on the walls as film_m; only when walls are
+//                coated)
 //   /landmarks   @names: one per line; positions [F,L,3]
 //   /events      @names: one per line; time_s [E] (d)
 //   /ledger      [F,5] (i: start, fluid, film, swallowed, escaped) or [0,5]
 //
-// Nothing is optional: without skin V and T are 0, without a bolus N is 0.
+// Nothing else is optional: without skin V and T are 0, without a bolus N is 0.
 //
 // Poses and times stay float64: they are few, and what is read is what was written, bit for bit.
 #pragma once

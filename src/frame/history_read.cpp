@@ -133,6 +133,8 @@ void readBolus(h5::Reader& r, BolusTrack& b, hsize_t frames) {
   readRows<float, float>(r, "/bolus/s_m", {frames, n}, b.s_m);
   readRows<ParticleState, std::uint8_t>(r, "/bolus/state", {frames, n}, b.state);
   readRows<Region, std::uint8_t>(r, "/bolus/region", {frames, n}, b.region);
+  if (r.has("/bolus/lent_share"))
+    readRows<float, float>(r, "/bolus/lent_share", {frames, n}, b.lentShare);
   if (n == 0) {
     const double volume_m3 = b.particleVolume_m3;
     b = {};

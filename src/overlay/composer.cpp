@@ -119,7 +119,7 @@ void Composer::drawModel(Image& onto, const frame::History& model, int k,
     const double spacing_m = std::cbrt(model.bolus.particleVolume_m3);
     const auto& particles = model.bolus.positions[static_cast<std::size_t>(k)];
     for (std::size_t i = 0; i < particles.size(); ++i)
-      if (model.bolus.state[static_cast<std::size_t>(k)][i] != frame::ParticleState::swallowed)
+      if (frame::isThere(model.bolus.state[static_cast<std::size_t>(k)][i]))
         bolus.disc(toPane({{particles[i].y(), -particles[i].z()}})[0],
                    kParticleShare * spacing_m * place.scale * zoom_);
     bolus.blendOnto(onto, kBolusColour, kBolusOpacity);

@@ -144,6 +144,7 @@ frame::History retimed(const frame::History& m, const TimeWarp& warp,
       h.bolus.state.push_back(m.bolus.state[n]);
       h.bolus.region.push_back(m.bolus.region[n]);
       h.bolus.s_m.push_back(m.bolus.s_m[n]);
+      if (!m.bolus.lentShare.empty()) h.bolus.lentShare.push_back(m.bolus.lentShare[n]);
     }
     if (!m.ledger.empty()) h.ledger.push_back(m.ledger[at.nearest()]);
   }

@@ -8,7 +8,7 @@
 
 namespace swallowclip::pipeline {
 namespace {
-constexpr std::string_view kMark = "swallowclip checkpoint 1\n";
+constexpr std::string_view kMark = "swallowclip checkpoint 2\n";
 
 template <class T>
 void put(std::string& to, const std::vector<T>& values) {
@@ -55,6 +55,8 @@ Result<void> writeCheckpoint(const std::filesystem::path& path, const bolus::Sol
   rows(b.state);
   rows(b.region);
   rows(b.s_m);
+  rows(b.lentShare);
+  rows(h.skin.film_m);
   const std::string state = solver.save();
   put(out, std::vector<char>(state.begin(), state.end()));
   const std::uint64_t digest = stateDigest(out.data(), out.size());
@@ -87,7 +89,10 @@ Result<void> readCheckpoint(const std::filesystem::path& path, bolus::Solver& so
   if (frames > in.size() || !getRows(in, frames, b.positions) ||
       !getRows(in, frames, b.velocities) || !getRows(in, frames, b.densityRatio) ||
       !getRows(in, frames, b.state) || !getRows(in, frames, b.region) ||
-      !getRows(in, frames, b.s_m) || !get(in, state))
+      !getRows(in, frames, b.s_m) ||
+      (solver.coating().on() &&
+       !(getRows(in, frames, b.lentShare) && getRows(in, frames, h.skin.film_m))) ||
+      !get(in, state))
     return refuse("the checkpoint is cut short");
   return solver.restore({state.data(), state.size()});
 }

@@ -72,6 +72,13 @@ void appendBolus(const bolus::Solver& solver, frame::History& h) {
     state.push_back(static_cast<frame::ParticleState>(p.state[i]));
     region.push_back(regionOf(p.state[i], p.branch[i], p.s_m[i], p.positions[i].z()));
   }
+  if (solver.coating().on()) {
+    auto& lent = b.lentShare.emplace_back();
+    for (const double m3 : solver.coating().lent_m3())
+      lent.push_back(static_cast<float>(m3 / solver.particleVolume_m3()));
+    const std::vector<double> thickness_m = solver.coatingThickness_m();
+    h.skin.film_m.emplace_back(thickness_m.begin(), thickness_m.end());
+  }
   const bolus::Ledger l = solver.ledger();
   h.ledger.push_back({l.start, l.fluid, l.film, l.swallowed, l.escaped});
 }

@@ -202,7 +202,7 @@ bool expected(const frame::History& h, int frame, const std::string& structure) 
   if (structure == kBolusInMouth && !h.bolus.region.empty())
     here = std::ranges::count(h.bolus.region[k], frame::Region::oral);
   else if (structure == kBolus && !h.bolus.state.empty())
-    here -= std::ranges::count(h.bolus.state[k], frame::ParticleState::swallowed);
+    here = std::ranges::count_if(h.bolus.state[k], frame::isThere);
   return 2 * here > n;
 }
 

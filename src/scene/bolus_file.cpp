@@ -10,8 +10,8 @@ namespace {
 // paste.
 constexpr double kMinDensity_kgm3 = 500, kMaxDensity_kgm3 = 3000;
 constexpr double kMinViscosity_Pas = 1e-4, kMaxViscosity_Pas = 1000;
-constexpr double kMaxConsistency_Pasn = 1e4;  // thick puree: some 100 Pa.s^n
-constexpr double kMaxTension_Nm = 0.5;        // water has 0.073, mercury 0.49
+constexpr double kMaxConsistency_Pasn = 1e4;                   // thick puree: some 100 Pa.s^n
+constexpr double kMinTension_Nm = 1e-3, kMaxTension_Nm = 0.5;  // water has 0.073, mercury 0.49
 constexpr double kRadPerDeg = kPi / 180;
 
 /// Names become parts of file names.
@@ -82,6 +82,9 @@ bolus::Fluid readFluid(const JsonNode& node) {
       node.fail("\"contact_angle_deg\" without surface tension has no effect",
                 "Give \"surface_tension_Nm\" above 0 (water 0.073), or remove the angle.");
   }
+  if (node.has("coating"))
+    fluid.coatingTension_Nm =
+        node.object("coating").number("surface_tension_Nm", kMinTension_Nm, kMaxTension_Nm);
   if (const std::string problem = fluid.validate(); !problem.empty())
     node.fail(problem, "Correct the numbers of this bolus.");
   return fluid;

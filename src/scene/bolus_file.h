@@ -12,7 +12,8 @@
 
 namespace swallowclip::scene {
 
-/// Density and rheology out of any object that holds their keys; other keys are left alone.
+/// Density, rheology and coating out of any object that holds their keys; other keys are left
+/// alone.
 bolus::Fluid readFluid(const JsonNode& node);
 
 struct BolusDef {

@@ -23,19 +23,25 @@ Json number(const std::optional<double>& v) {
 }
 
 Json conservationJson(const scoring::Conservation& c) {
-  return {{"particles_start", c.particlesStart},
-          {"particles_end", c.particlesEnd},
-          {"swallowed", c.swallowed},
-          {"left_in_oral", c.leftInOral},
-          {"left_in_pharynx", c.leftInPharynx},
-          {"in_airway", c.inAirway},
-          {"in_nasopharynx", c.inNasopharynx},
-          {"in_esophagus", c.inEsophagus},
-          {"escaped", c.escaped},
-          {"swallowed_fraction", number(c.swallowedFraction)},
-          {"mean_density_error", number(c.meanDensityError)},
-          {"max_density_error", number(c.maxDensityError)},
-          {"film_fraction", number(c.filmFraction)}};
+  Json j = {{"particles_start", c.particlesStart},
+            {"particles_end", c.particlesEnd},
+            {"swallowed", c.swallowed},
+            {"left_in_oral", c.leftInOral},
+            {"left_in_pharynx", c.leftInPharynx},
+            {"in_airway", c.inAirway},
+            {"in_nasopharynx", c.inNasopharynx},
+            {"in_esophagus", c.inEsophagus},
+            {"escaped", c.escaped},
+            {"swallowed_fraction", number(c.swallowedFraction)},
+            {"mean_density_error", number(c.meanDensityError)},
+            {"max_density_error", number(c.maxDensityError)},
+            {"film_fraction", number(c.filmFraction)}};
+  if (c.coating_m3) {
+    j["coated"] = c.coated;
+    j["coating_mL"] = number(*c.coating_m3 * 1e6);
+    j["volume_error"] = number(c.volumeError);
+  }
+  return j;
 }
 
 std::uint64_t digestOfAll(const frame::History& h) {

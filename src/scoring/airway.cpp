@@ -12,7 +12,6 @@
 namespace swallowclip::scoring {
 namespace {
 using frame::History;
-using frame::ParticleState;
 using frame::Region;
 
 /// Particles in the airway: all, and those at or below the folds, and below them.
@@ -34,8 +33,7 @@ Inside insideAt(const History& h, int frame, const ScoringRules& rules) {
   const auto folds = folds_m(h, frame, spine);
   const auto& b = h.bolus;
   for (std::size_t k = 0; k < b.region[frame].size(); ++k) {
-    if (b.region[frame][k] != Region::larynx || b.state[frame][k] == ParticleState::swallowed)
-      continue;
+    if (b.region[frame][k] != Region::larynx || !isThere(b.state[frame][k])) continue;
     ++in.all;
     if (!folds) continue;
     const double above = spine.height_m(b.positions[frame][k].cast<double>()) - *folds;

@@ -79,7 +79,7 @@ std::vector<double> bolusCentroid_m(const frame::BolusTrack& bolus, const Scorin
     double sum = 0;
     int n = 0;
     for (std::size_t k = 0; k < bolus.s_m[f].size(); ++k)
-      if (bolus.state[f][k] != ParticleState::swallowed) sum += bolus.s_m[f][k], ++n;
+      if (isThere(bolus.state[f][k])) sum += bolus.s_m[f][k], ++n;
     const auto least = rules.headShare * static_cast<double>(bolus.s_m[f].size());
     out.push_back(n > 0 && n >= least ? sum / n : kNaN);
   }

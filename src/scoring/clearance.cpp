@@ -79,7 +79,7 @@ std::vector<Quantity> measureClearance(const frame::History& history, const Scor
       int left = 0;
       const auto& state = history.bolus.state[last];
       for (std::size_t k = 0; k < state.size(); ++k)
-        left += state[k] != ParticleState::swallowed && history.bolus.region[last][k] == r.region;
+        left += isThere(state[k]) && history.bolus.region[last][k] == r.region;
       q.value = static_cast<double>(left) / static_cast<double>(state.size());
       q.reason.clear();
     }

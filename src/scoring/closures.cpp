@@ -11,7 +11,6 @@
 namespace swallowclip::scoring {
 namespace {
 using frame::History;
-using frame::ParticleState;
 using frame::Region;
 
 bool sealed(double ratio, double gap_m, const ScoringRules& r) {
@@ -25,7 +24,7 @@ int narrowest(const std::vector<double>& gap, int from) {
 int countIn(const frame::BolusTrack& b, int frame, Region region, double before_y) {
   int n = 0;
   for (std::size_t k = 0; k < b.region[frame].size(); ++k)
-    n += b.region[frame][k] == region && b.state[frame][k] != ParticleState::swallowed &&
+    n += b.region[frame][k] == region && isThere(b.state[frame][k]) &&
          b.positions[frame][k].y() < before_y;
   return n;
 }

@@ -266,7 +266,7 @@ std::vector<double> oralCentroid_m(const frame::BolusTrack& bolus, const Scoring
     double sum = 0;
     int oral = 0;
     for (std::size_t k = 0; k < bolus.s_m[f].size(); ++k) {
-      const bool gone = bolus.state[f][k] == frame::ParticleState::swallowed;
+      const bool gone = !frame::isThere(bolus.state[f][k]);
       if (gone || bolus.s_m[f][k] > rules.ramus_m) continue;
       sum += bolus.s_m[f][k], ++oral;
     }

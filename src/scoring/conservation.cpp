@@ -28,6 +28,17 @@ void countRegion(Region region, Conservation& c) {
       break;  // the caller counts them by state
   }
 }
+
+double coatingVolume_m3(const frame::SkinTrack& skin, int frame) {
+  double sum_m3 = 0;
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    const Triangle& tri = skin.triangles[t];
+    const auto at = [&](int v) -> Vec3 { return skin.positions[frame][v].cast<double>(); };
+    const Vec3 a = at(tri[0]);
+    sum_m3 += (at(tri[1]) - a).cross(at(tri[2]) - a).norm() / 2 * skin.film_m[frame][t];
+  }
+  return sum_m3;
+}
 }  // namespace
 
 std::optional<Conservation> countParticles(const frame::History& history) {
@@ -37,12 +48,18 @@ std::optional<Conservation> countParticles(const frame::History& history) {
   const auto& region = bolus.region.back();
 
   Conservation c;
+  const int last = static_cast<int>(bolus.state.size()) - 1;
   int film = 0;
+  double swallowed_m3 = 0, left_m3 = 0;  // of particles, without what they have lent
   for (std::size_t k = 0; k < state.size(); ++k) {
     if (state[k] == ParticleState::swallowed || region[k] == Region::swallowed) {
       ++c.swallowed;
+      swallowed_m3 += bolus.volume_m3(last, k);
       continue;
     }
+    c.coated += state[k] == ParticleState::coating;
+    left_m3 += bolus.volume_m3(last, k);
+    if (state[k] == ParticleState::coating) continue;
     countRegion(region[k], c);
     ++c.particlesEnd;
     film += state[k] == ParticleState::film;
@@ -56,6 +73,12 @@ std::optional<Conservation> countParticles(const frame::History& history) {
   }
   const double start = c.particlesStart > 0 ? c.particlesStart : 1;
   c.swallowedFraction = c.swallowed / start;
+  if (!bolus.lentShare.empty()) {
+    const double start_m3 = bolus.particleVolume_m3 * start;
+    c.coating_m3 = coatingVolume_m3(history.skin, last);
+    c.swallowedFraction = swallowed_m3 / start_m3;
+    c.volumeError = (swallowed_m3 + left_m3 + *c.coating_m3) / start_m3 - 1;
+  }
   c.filmFraction = film / start;
   c.meanDensityError = history.meta.meanDensityError;
   c.maxDensityError = history.meta.maxDensityError;

@@ -94,7 +94,7 @@ std::vector<Series> bolusSeries(const History& h, const ScoringRules& rules) {
   for (int f = 0; f < h.frames(); ++f) {
     double oral = 0, throat = 0;
     for (std::size_t k = 0; k < h.bolus.state[f].size(); ++k) {
-      if (h.bolus.state[f][k] == frame::ParticleState::swallowed) continue;
+      if (!frame::isThere(h.bolus.state[f][k])) continue;
       const frame::Region r = h.bolus.region[f][k];
       oral += r == frame::Region::oral;
       throat += r == frame::Region::oropharynx || r == frame::Region::hypopharynx;

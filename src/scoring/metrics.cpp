@@ -67,6 +67,9 @@ void addConservation(const Conservation& c, std::string& out) {
       to, "Left in: mouth {}, pharynx {}, airway {}, nasopharynx {}, esophagus {}; film {:.1f} %\n",
       c.leftInOral, c.leftInPharynx, c.inAirway, c.inNasopharynx, c.inEsophagus,
       100 * c.filmFraction);
+  if (c.coating_m3)
+    fmt::format_to(to, "Coating on the walls: {:.3f} mL; volume error {:.1e}\n",
+                   *c.coating_m3 * 1e6, c.volumeError);
   fmt::format_to(to, "Density error: mean {:.2f} %, largest {:.2f} %\n", 100 * c.meanDensityError,
                  100 * c.maxDensityError);
 }

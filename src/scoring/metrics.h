@@ -49,12 +49,18 @@ struct Conservation {
   int particlesStart = 0, particlesEnd = 0, swallowed = 0;
   int leftInOral = 0, leftInPharynx = 0, inAirway = 0, inNasopharynx = 0, inEsophagus = 0;
   int escaped = 0;
+  int coated = 0;  ///< particles that lie on the walls as a whole, no longer as particles
   double swallowedFraction = 0, filmFraction = 0;
   double meanDensityError = 0, maxDensityError = 0;
 
+  /// On the walls, thinner than a particle; empty when the bolus coats none. Then swallowedFraction
+  /// is one of volume, and volumeError what particles and walls hold against the start, as a share.
+  std::optional<double> coating_m3;
+  double volumeError = 0;
+
   /// Every particle that started is somewhere.
   bool balanced() const {
-    return particlesStart == swallowed + particlesEnd + escaped &&
+    return particlesStart == swallowed + particlesEnd + coated + escaped &&
            particlesEnd == leftInOral + leftInPharynx + inAirway + inNasopharynx + inEsophagus;
   }
 };

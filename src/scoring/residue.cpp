@@ -13,7 +13,6 @@
 namespace swallowclip::scoring {
 namespace {
 using frame::History;
-using frame::ParticleState;
 using frame::Region;
 using frame::Wall;
 
@@ -99,8 +98,7 @@ double meanSpeedLeft_ms(const frame::BolusTrack& bolus, int frame) {
   double sum = 0;
   int n = 0;
   for (std::size_t k = 0; k < bolus.state[frame].size(); ++k)
-    if (bolus.state[frame][k] != ParticleState::swallowed)
-      sum += bolus.velocities[frame][k].norm(), ++n;
+    if (isThere(bolus.state[frame][k])) sum += bolus.velocities[frame][k].norm(), ++n;
   return n ? sum / n : 0;
 }
 }  // namespace
@@ -149,9 +147,9 @@ double Residue::thickness_m(int component, double radius_m) const {
 std::vector<Deposit> depositsAt(const History& h, int frame, const ScoringRules& rules) {
   std::vector<Deposit> out;
   for (std::size_t k = 0; k < h.bolus.state[frame].size(); ++k) {
-    if (h.bolus.state[frame][k] == ParticleState::swallowed) continue;
+    if (!isThere(h.bolus.state[frame][k])) continue;
     const Vec3f& p = h.bolus.positions[frame][k];
-    out.push_back({p.cast<double>(), h.bolus.particleVolume_m3, 0,
+    out.push_back({p.cast<double>(), h.bolus.volume_m3(frame, k), 0,
                    locate(nearestPlace(h.skin, frame, p), h.bolus.region[frame][k], rules)});
   }
   addFilm(h, frame, rules, out);

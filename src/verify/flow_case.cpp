@@ -36,6 +36,16 @@ Snapshot snapshot(const CaseDef& def, const Domain& domain, const bolus::Solver&
   for (const Vec3& v : p.velocities) s.velocities.push_back(domain.fromWorld(v));
   s.pressure_Pa = p.pressure_Pa;
   s.densityRatio = p.densityRatio;
+  std::vector<Vec3> x, v;
+  const bolus::Coating& coating = solver.coating();
+  if (coating.on()) domain.walls().at(s.time_s, x, v);
+  for (std::size_t k = 0; k < coating.wetness().size(); ++k) {
+    if (coating.wetness()[k] != bolus::Coating::Wetness::left) continue;
+    const Triangle& t = domain.walls().triangles[k];
+    const double area_m2 = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).norm() / 2;
+    s.patches.push_back({domain.fromWorld((x[t[0]] + x[t[1]] + x[t[2]]) / 3), area_m2,
+                         coating.volume_m3()[k] / area_m2, coating.speed_ms()[k]});
+  }
   if (def.gravity_ms2.norm() > 0) s.up = domain.fromWorld(-def.gravity_ms2.normalized());
   s.escaped = solver.ledger().escaped;
   return s;

@@ -237,6 +237,13 @@ const std::vector<Row>& rows() {
        [](const Snapshot& s, const QuantityDef& q) {
          return mean(s, q, [&](std::size_t i) { return std::max(0.0, s.densityRatio[i] - 1); });
        }},
+      {"film-exponent", kRatio,
+       [](const Snapshot& s, const QuantityDef& q) {
+         std::vector<Patch> patches;
+         for (const Patch& p : s.patches)
+           if (within(q, p.centre)) patches.push_back(p);
+         return filmExponent(*s.def, patches);
+       }},
       {"plug-half-width", kMm,
        [](const Snapshot& s, const QuantityDef&) { return plugHalfWidth(s); }},
   };
@@ -256,8 +263,8 @@ std::vector<std::string> quantityNames() {
   return names;
 }
 std::vector<std::string> fieldNames() {
-  return {"velocity-x", "velocity-y", "velocity-z", "speed",
-          "swirl",      "radial",     "pressure",   "density-error"};
+  return {"velocity-x", "velocity-y", "velocity-z",    "speed", "swirl",
+          "radial",     "pressure",   "density-error", "film",  "contact-line-speed"};
 }
 std::vector<std::string> coordinateNames() {
   return {"x", "y", "z", "radius", "up"};
@@ -265,6 +272,7 @@ std::vector<std::string> coordinateNames() {
 
 Unit unitOf(const QuantityDef& q) {
   if (q.kind != "profile") return findRow(q.kind)->unit;
+  if (q.of == "film") return {"um", 1e6};
   return q.of == "pressure" ? kPa : q.of == "density-error" ? kRatio : kMms;
 }
 
@@ -273,7 +281,45 @@ double measureSeries(const QuantityDef& q, const Snapshot& s) {
   return row ? row->value(s, q) : 0;
 }
 
+namespace {
+bool isOfWalls(const QuantityDef& q) {
+  return q.of == "film" || q.of == "contact-line-speed";
+}
+constexpr int kPatchBins = 12;  // assumed (5 to 50)
+}  // namespace
+
+void ProfileSum::addPatches(const QuantityDef& q, const Snapshot& s, const Reference& reference) {
+  if (count_.empty()) {
+    double high = -INFINITY;
+    low_ = INFINITY;
+    for (const Patch& p : s.patches)
+      if (within(q, p.centre)) {
+        low_ = std::min(low_, coordinate(q, s, p.centre));
+        high = std::max(high, coordinate(q, s, p.centre));
+      }
+    if (!(low_ < high)) return;
+    const int bins = q.bins > 0 ? q.bins : kPatchBins;
+    width_ = (high - low_) / bins;
+    for (auto* sum : {&count_, &along_, &measured_, &reference_}) sum->assign(bins, 0.0);
+  }
+  for (const Patch& p : s.patches)
+    if (within(q, p.centre))
+      addOne(coordinate(q, s, p.centre), q.of == "film" ? p.film_m : p.speed_ms,
+             reference({p.centre, coordinate(q, s, p.centre), s.time_s}));
+}
+
+void ProfileSum::addOne(double at, double measured, double wanted) {
+  if (!std::isfinite(wanted)) return;
+  const auto k = static_cast<std::size_t>(
+      std::clamp((at - low_) / width_, 0.0, static_cast<double>(count_.size()) - 0.5));
+  ++count_[k];
+  along_[k] += at;
+  measured_[k] += measured;
+  reference_[k] += wanted;
+}
+
 void ProfileSum::add(const QuantityDef& q, const Snapshot& s, const Reference& reference) {
+  if (isOfWalls(q)) return addPatches(q, s, reference);
   if (count_.empty()) {
     double low = INFINITY, high = -INFINITY;
     for (const Vec3& p : s.positions) {
@@ -293,14 +339,8 @@ void ProfileSum::add(const QuantityDef& q, const Snapshot& s, const Reference& r
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     const Vec3& p = s.positions[i];
     if (!within(q, p)) continue;
-    const double at = coordinate(q, s, p), wanted = reference({p, at, s.time_s});
-    if (!std::isfinite(wanted)) continue;
-    const auto k = static_cast<std::size_t>(
-        std::clamp((at - low_) / width_, 0.0, static_cast<double>(count_.size()) - 0.5));
-    ++count_[k];
-    along_[k] += at;
-    measured_[k] += field(q, s, i);
-    reference_[k] += wanted;
+    const double at = coordinate(q, s, p);
+    addOne(at, field(q, s, i), reference({p, at, s.time_s}));
   }
 }
 

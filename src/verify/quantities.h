@@ -6,6 +6,7 @@
 
 #include "bolus/solver.h"
 #include "verify/case.h"
+#include "verify/film.h"
 #include "verify/references.h"
 
 namespace swallowclip::verify {
@@ -16,6 +17,7 @@ struct Snapshot {
   double time_s = 0, spacing_m = 0, particleVolume_m3 = 0;
   std::vector<Vec3> positions, velocities;
   std::vector<double> pressure_Pa, densityRatio;
+  std::vector<Patch> patches;         ///< walls that the fluid has left
   Vec3 up{0, 0, 1};                   ///< against gravity
   Vec3 firstMomentum = Vec3::Zero();  ///< of the start, kg m/s
   int escaped = 0;
@@ -46,6 +48,9 @@ class ProfileSum {
 
  private:
   double low_ = 0, width_ = 0;
+  void addPatches(const QuantityDef& quantity, const Snapshot& s, const Reference& reference);
+  void addOne(double at, double measured, double wanted);
+
   std::vector<double> count_, along_, measured_, reference_;
 };
 }  // namespace swallowclip::verify

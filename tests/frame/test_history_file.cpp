@@ -65,6 +65,21 @@ TEST(HistoryFile, ReadsBackBitForBit) {
   expectSame(h, *loaded);
 }
 
+TEST(HistoryFile, ReadsBackWhatParticlesHaveLentToTheWalls) {
+  History h = sampleHistory();
+  const std::uint64_t without = h.digest(1);
+  for (const auto& row : h.bolus.state) h.bolus.lentShare.emplace_back(row.size(), 0.25f);
+  h.bolus.state[1][0] = ParticleState::coating;
+  EXPECT_NE(h.digest(1), without);
+  const Scratch folder;
+  ASSERT_TRUE(saveHistory(h, folder / "run.h5"));
+  const auto back = loadHistory(folder / "run.h5");
+  ASSERT_TRUE(back) << back.error().text();
+  EXPECT_EQ(back->bolus.lentShare, h.bolus.lentShare);
+  EXPECT_EQ(back->digest(1), h.digest(1));
+  EXPECT_NEAR(back->bolus.volume_m3(1, 0), 0.75 * h.bolus.particleVolume_m3, 1e-20);
+}
+
 TEST(HistoryFile, ReadsBackWithoutBolusSkinAndExtras) {
   const Scratch folder;
   History h = sampleHistory(3, 4, 0);  // frames of no particles

@@ -87,3 +87,17 @@ TEST(BolusFile, SurfaceTensionIsReadWithItsAngle) {
   EXPECT_NE(alone.find("without surface tension has no effect"), std::string::npos) << alone;
   EXPECT_NE(alone.find("Give \"surface_tension_Nm\""), std::string::npos) << alone;
 }
+
+TEST(BolusFile, CoatingIsReadAndGuarded) {
+  const auto text = [](const std::string& coating) {
+    return R"({"density_kgm3": 1000, "rheology": "newtonian", "viscosity_Pas": 1, "coating": )" +
+           coating + "}";
+  };
+  EXPECT_EQ(fileError(text(R"({"surface_tension_Nm": 0.06})")), "accepted");
+  const std::string zero = fileError(text(R"({"surface_tension_Nm": 0})"));
+  EXPECT_NE(zero.find("surface_tension_Nm"), std::string::npos) << zero;
+  EXPECT_NE(zero.find(":1:"), std::string::npos) << zero;
+  EXPECT_NE(fileError(text("{}")).find("surface_tension_Nm"), std::string::npos);
+  EXPECT_NE(fileError(text(R"({"surface_tension_mNm": 60})")), "accepted");
+  EXPECT_EQ(known("thin").fluid.coatingTension_Nm, 0);
+}
