@@ -8,7 +8,8 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr int kWallChunk = 16;      // particles per work item of wall work
+constexpr int kWallChunk = 16;  // particles per work item of wall work
+constexpr int kDensityChunk = 512;
 constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
 constexpr double kFilmGap = 0.3;    // spacings, DESIGN 5 (0.6 invents residue)
 // The same in a fold or cusp, where no contact faces the nearest: a slit of that width leaves a
@@ -300,8 +301,10 @@ int Solver::Impl::meetWalls(double t_s) {
 }
 
 void Solver::Impl::findDensities() {
-  for (std::size_t i = 0; i < active.size(); ++i)
-    particles.densityRatio[i] =
-        active[i] ? neighbours.sumW[neighbours.slot[i]] + walls[i].lambda : 1.0;
+  pool.forChunks(static_cast<int>(active.size()), kDensityChunk, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      particles.densityRatio[i] =
+          active[i] ? neighbours.sumW[neighbours.slot[i]] + walls[i].lambda : 1.0;
+  });
 }
 }  // namespace swallowclip::bolus

@@ -330,8 +330,9 @@ bool Neighbours::follow(std::span<const Vec3> points, std::span<const std::uint8
     if ((take.empty() || take[p]) != (slot[p] >= 0)) return false;
     if (slot[p] >= 0 && !((points[p] - builtAt_[slot[p]]).squaredNorm() < most2)) return false;
   }
-  for (std::size_t s = 0; s < shift_.size(); ++s)
-    places_.set(static_cast<int>(s), points[id[owner_[s]]] + shift_[s] - low_);
+  pool.forChunks(static_cast<int>(shift_.size()), kChunk, [&](int begin, int end, int) {
+    for (int s = begin; s < end; ++s) places_.set(s, points[id[owner_[s]]] + shift_[s] - low_);
+  });
   measure(kernel, volume_m3, pool);
   return true;
 }

@@ -94,7 +94,9 @@ void Projection::brake(const Flow& f, std::span<const double> wallDrag) {
 
 /// Rate of rho* (1/s) into source_.
 void Projection::densityRate(const Flow& f, const std::vector<Vec3>& v) {
-  for (int i = 0; i < f.count(); ++i) velocity_.set(i, v[f.particle(i)]);
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) velocity_.set(i, v[f.particle(i)]);
+  });
   const RateSweep sweep{f.lists(), velocity_.data(), source_.data()};
   f.sweep([&](int begin, int end, int) {
     sweep.run(begin, end);
@@ -211,12 +213,14 @@ ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<dou
                                             double dt_s, std::vector<Vec3>& v) {
   densityRate(f, v);
   // what is still below rest density may close up; nothing is pulled apart
-  for (int i = 0; i < f.count(); ++i) {
-    const double room = std::max(0.0, 1 - density[f.particle(i)]);
-    const double open =
-        full ? 0 : std::max(0.0, room - kOpening) / dt_s + std::min(room, kOpening) / kSettle_s;
-    source_[i] = static_cast<float>((source_[i] - open) / dt_s);
-  }
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const double room = std::max(0.0, 1 - density[f.particle(i)]);
+      const double open =
+          full ? 0 : std::max(0.0, room - kOpening) / dt_s + std::min(room, kOpening) / kSettle_s;
+      source_[i] = static_cast<float>((source_[i] - open) / dt_s);
+    }
+  });
   takeMeanOff(f.count());
   const ProjectionReport report = project(f, dt_s, kLeastRate, kRateCap, tolerances.rate, rateK_);
   force(f, stress_.data());
@@ -228,8 +232,11 @@ ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<do
                                              double dt_s, std::vector<Vec3>& v) {
   densityRate(f, v);
   const double within_s = std::max(dt_s, kCorrection_s);
-  for (int i = 0; i < f.count(); ++i)
-    source_[i] = static_cast<float>((source_[i] + (density[f.particle(i)] - 1) / within_s) / dt_s);
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      source_[i] =
+          static_cast<float>((source_[i] + (density[f.particle(i)] - 1) / within_s) / dt_s);
+  });
   takeMeanOff(f.count());
   const ProjectionReport report =
       project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, densityK_);

@@ -27,10 +27,12 @@ void Shifting::shift(const Flow& f, const std::vector<double>& density, double s
   least_.resize(n);
   velocity_.assign(n + 1);
   moving = v;
-  for (int i = 0; i < n; ++i) {
-    density_[i] = static_cast<float>(density[f.particle(i)]);
-    velocity_.set(i, v[f.particle(i)]);
-  }
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      density_[i] = static_cast<float>(density[f.particle(i)]);
+      velocity_.set(i, v[f.particle(i)]);
+    }
+  });
   const LeastSweep least{f.lists(), density_.data(), least_.data()};
   const SlopeSweep slopes{f.lists(), velocity_.data()};
   f.sweep([&](int begin, int end, int) {

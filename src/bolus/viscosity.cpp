@@ -118,7 +118,7 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
     return ViscositySweep{f.lists(), pair_.data(), own_.data(), v.data(), product_.data()};
   };
   struct Sums {
-    double rz = 0, rr = 0;
+    double right2 = 0, rz = 0, rr = 0;
     void add(float m, const float* v) {
       double square = 0;
       for (int a = 0; a < 3; ++a) square += static_cast<double>(v[a]) * v[a];
@@ -128,21 +128,33 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
   };
   // first guess: v itself
   const ViscositySweep first = sweep(v_), step = sweep(direction_);
-  f.sweep([&](int b, int e, int) { first.run(b, e); });
-  double right2 = 0;
-  Sums now;
-  for (int i = 0; i < n; ++i) {
-    right2 += right_[i].squaredNorm();
-    for (int a = 0; a < 3; ++a) {
-      residual_[i][a] = static_cast<float>(right_[i][a]) - product_[i][a];
-      direction_[i][a] = inverse_[i] * residual_[i][a];
-    }
-    now.add(inverse_[i], residual_[i]);
-  }
-  const double goal2 =
-      std::max(kTolerance * kTolerance * right2, kSmallSpeed_ms * kSmallSpeed_ms * n);
-  Report report;
   std::vector<Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
+  const auto total = [&] {
+    Sums all;
+    for (const Sums& p : parts) {
+      all.right2 += p.right2;
+      all.rz += p.rz;
+      all.rr += p.rr;
+    }
+    return all;
+  };
+  f.sweep([&](int b, int e, int c) {
+    first.run(b, e);
+    Sums part;
+    for (int i = b; i < e; ++i) {
+      part.right2 += right_[i].squaredNorm();
+      for (int a = 0; a < 3; ++a) {
+        residual_[i][a] = static_cast<float>(right_[i][a]) - product_[i][a];
+        direction_[i][a] = inverse_[i] * residual_[i][a];
+      }
+      part.add(inverse_[i], residual_[i]);
+    }
+    parts[c] = part;
+  });
+  Sums now = total();
+  const double goal2 =
+      std::max(kTolerance * kTolerance * now.right2, kSmallSpeed_ms * kSmallSpeed_ms * n);
+  Report report;
   while (now.rr > goal2) {
     report.atCap = report.iterations >= kCap;
     if (report.atCap) break;
@@ -161,11 +173,7 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
       }
       parts[c] = part;
     });
-    Sums next;
-    for (const Sums& p : parts) {
-      next.rz += p.rz;
-      next.rr += p.rr;
-    }
+    const Sums next = total();
     const float keep = static_cast<float>(next.rz / now.rz);
     now = next;
     f.sweep([&](int b, int e, int) {
@@ -211,12 +219,15 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
     viscosity_[i] =
         constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRate_s_[f.particle(i)]);
   assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
-  for (int i = 0; i < n; ++i) {
-    const int p = f.particle(i);
-    const WallSample& w = f.walls[p];
-    right_[i] = w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
-    v_.set(i, v[p]);
-  }
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const int p = f.particle(i);
+      const WallSample& w = f.walls[p];
+      right_[i] =
+          w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
+      v_.set(i, v[p]);
+    }
+  });
   const Report report =
       isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m) ? Report{} : solve(f);
   // The solution enters only through the antisymmetric pair terms, so that momentum is kept to
