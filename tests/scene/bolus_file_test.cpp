@@ -18,7 +18,10 @@ scene::BolusDef known(const std::string& name) {
 }
 
 std::string fileError(const std::string& json) {
-  const std::string path = ::testing::TempDir() + "bolus_file_test.json";
+  // tests run beside each other
+  const std::string path = ::testing::TempDir() + "bolus_file_" +
+                           ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+                           ".json";
   EXPECT_TRUE(writeFile(path, json));
   const auto def = scene::loadBolus(kScenes, path);
   std::filesystem::remove(path);
