@@ -22,9 +22,9 @@ constexpr double kTakeUpReach = 1.2;  // spacings, assumed (1 to 1.5)
 constexpr int kTakeUpCount = 3;       // fluid particles that near take a film up, assumed (2 to 5)
 constexpr double kTakeUpDensity = 1.03;   // of rho0 where a film is taken up, assumed (1 to 1.05)
 constexpr double kCrowdedDensity = 1.08;  // and at most what it makes of others', assumed
-// Steps that a neighbour list shall serve for, and must at least, to reach farther than the kernel,
-// and how much farther it may, in spacings: measured, within 3 % of the best time from half to
-// twice as much.
+// Steps that a neighbour list shall serve for, and must at least, to reach farther than the kernel;
+// and the least and most that it reaches farther, in spacings. Assumed (4 to 16, 2 to 4, 0.02 to
+// 0.1, 0.3 to 0.6): they change speed and the order of sums only.
 constexpr double kListSteps = 8, kLeastListSteps = 2, kLeastSkin = 0.05, kMostSkin = 0.5;
 constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
 }  // namespace
