@@ -21,43 +21,56 @@ void pause() {
 }
 }  // namespace
 
-ThreadPool::ThreadPool(int threads) {
-  for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { workerLoop(); });
+ThreadPool::ThreadPool(int threads) : stretches_(std::max(1, threads)) {
+  for (int i = 1; i < threads; ++i) workers_.emplace_back([this, i] { workerLoop(i); });
 }
 
 ThreadPool::~ThreadPool() {
   {
     std::lock_guard lock(mutex_);
     stop_ = true;
-    ticket_.fetch_add(kRound);
+    round_.fetch_add(1);
   }
   wake_.notify_all();
   for (std::thread& t : workers_) t.join();
 }
 
-// A ticket names a round and its next chunk. Taking one proves that the round still runs, and a
-// round runs until its last taken chunk is done, so that what was read of it before is still true.
-void ThreadPool::runChunks() {
+// From the front of one's own stretch, from the back of another's.
+bool ThreadPool::take(Stretch& s, bool own, int& chunk) {
+  constexpr std::uint64_t kMask = (1ull << kBits) - 1;
+  std::uint64_t left = s.left.load(std::memory_order_acquire);
   for (;;) {
-    std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-    const auto* body = body_.load(std::memory_order_relaxed);
-    const int n = n_.load(std::memory_order_relaxed),
-              chunk = chunk_.load(std::memory_order_relaxed);
-    const int count = count_.load(std::memory_order_relaxed);
-    const int c = static_cast<int>(ticket % kRound);
-    if (c >= count) return;
-    if (!ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel)) continue;
-    (*body)(c * chunk, std::min(n, (c + 1) * chunk), c);
-    if (finished_.fetch_add(1, std::memory_order_acq_rel) + 1 == count) {
-      std::lock_guard lock(mutex_);
-      done_.notify_all();
-    }
+    const std::uint64_t end = left & kMask, next = left >> kBits & kMask;
+    if (next >= end) return false;
+    const std::uint64_t less = own ? left + (1ull << kBits) : left - 1;
+    chunk = static_cast<int>(own ? next : end - 1);
+    if (s.left.compare_exchange_weak(left, less, std::memory_order_acq_rel,
+                                     std::memory_order_acquire))
+      return true;
   }
 }
 
-void ThreadPool::workerLoop() {
+// A round runs until every chunk that was taken of it is done, and the next one is written only
+// then: what is read of it after a chunk was taken belongs to that chunk.
+void ThreadPool::runChunks(int thread) {
+  const int threads = static_cast<int>(stretches_.size());
+  int done = 0, count = 0;
+  for (int k = 0; k < threads; ++k)
+    for (int c; take(stretches_[(thread + k) % threads], k == 0, c); ++done) {
+      const int n = n_.load(std::memory_order_relaxed);
+      const int chunk = chunk_.load(std::memory_order_relaxed);
+      count = count_.load(std::memory_order_relaxed);
+      (*body_.load(std::memory_order_relaxed))(c * chunk, std::min(n, (c + 1) * chunk), c);
+    }
+  if (done > 0 && finished_.fetch_add(done, std::memory_order_acq_rel) + done == count) {
+    std::lock_guard lock(mutex_);
+    done_.notify_all();
+  }
+}
+
+void ThreadPool::workerLoop(int thread) {
   std::uint64_t seen = 0;
-  const auto round = [&] { return ticket_.load(std::memory_order_acquire) / kRound; };
+  const auto round = [&] { return round_.load(std::memory_order_acquire); };
   for (;;) {
     for (int look = 0; look < kLooks && round() == seen; ++look) pause();
     if (round() == seen) {
@@ -68,7 +81,7 @@ void ThreadPool::workerLoop() {
     }
     seen = round();
     if (stop_) return;
-    runChunks();
+    runChunks(thread);
   }
 }
 
@@ -76,24 +89,28 @@ void ThreadPool::forChunks(int n, int chunk, const std::function<void(int, int, 
                            int alone) {
   if (n <= 0) return;
   const int count = (n + chunk - 1) / chunk;
-  if (workers_.empty() || count == 1 || n < alone) {
+  if (workers_.empty() || count == 1 || count > kMostChunks || n < alone) {
     for (int c = 0; c < count; ++c) body(c * chunk, std::min(n, (c + 1) * chunk), c);
     return;
   }
   {
     std::lock_guard lock(mutex_);
-    // no ticket of the last round can be taken any more: all of its chunks are
     body_.store(&body, std::memory_order_relaxed);
     n_.store(n, std::memory_order_relaxed);
     chunk_.store(chunk, std::memory_order_relaxed);
-    finished_.store(0, std::memory_order_relaxed);
-    const std::uint64_t round = ticket_.load(std::memory_order_relaxed) / kRound + 1;
-    ticket_.store(round * kRound + kRound / 4, std::memory_order_release);  // nothing to take yet
     count_.store(count, std::memory_order_relaxed);
-    ticket_.store(round * kRound, std::memory_order_release);
+    finished_.store(0, std::memory_order_relaxed);
+    const std::uint64_t round = round_.load(std::memory_order_relaxed) + 1;
+    const std::int64_t threads = this->threads();
+    for (std::int64_t t = 0; t < threads; ++t)
+      stretches_[t].left.store(round << (2 * kBits) |
+                                   static_cast<std::uint64_t>(t * count / threads) << kBits |
+                                   static_cast<std::uint64_t>((t + 1) * count / threads),
+                               std::memory_order_release);
+    round_.store(round, std::memory_order_release);
   }
   if (asleep_ > 0) wake_.notify_all();
-  runChunks();
+  runChunks(0);
   const auto done = [&] { return finished_.load(std::memory_order_acquire) == count; };
   for (int look = 0; look < kLooks && !done(); ++look) pause();
   if (done()) return;

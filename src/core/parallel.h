@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Fixed chunks, so that results never depend on the number of threads: a caller writes either
-// per index, or per chunk and reduces the chunks in order. Workers look for work for some
-// microseconds, then sleep.
+// per index, or per chunk and reduces the chunks in order. Each thread begins with its own stretch
+// of chunks, the same one in every loop over as many, so that what it wrote is still in its cache;
+// then it helps others, from the far end of theirs. Workers look for work for some microseconds,
+// then sleep.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -32,16 +34,26 @@ class ThreadPool {
   double sumChunks(int n, int chunk, const std::function<double(int, int)>& term, int alone = 0);
 
  private:
-  void workerLoop();
-  void runChunks();
+  // What is left of a thread's chunks: round number, next and end in one word, so that taking one
+  // proves that the round still runs.
+  struct alignas(64) Stretch {
+    std::atomic<std::uint64_t> left{0};
+  };
+  static constexpr int kBits = 20;  // of next and end
+  static constexpr int kMostChunks = (1 << kBits) - 1;
+
+  void workerLoop(int thread);
+  void runChunks(int thread);
+  bool take(Stretch& stretch, bool own, int& chunk);
 
   std::vector<std::thread> workers_;
+  std::vector<Stretch> stretches_;
   std::mutex mutex_;
   std::condition_variable wake_, done_;
-  static constexpr std::uint64_t kRound = 1ull << 32;
   std::atomic<const std::function<void(int, int, int)>*> body_{nullptr};
-  std::atomic<int> n_{0}, chunk_{1}, count_{0}, finished_{0}, asleep_{0};
-  std::atomic<std::uint64_t> ticket_{0};  // round number times kRound plus the next chunk
-  bool stop_ = false;
+  std::atomic<int> n_{0}, chunk_{1}, count_{0}, asleep_{0};
+  alignas(64) std::atomic<int> finished_{0};
+  alignas(64) std::atomic<std::uint64_t> round_{0};
+  std::atomic<bool> stop_{false};
 };
 }  // namespace swallowclip
