@@ -173,13 +173,8 @@ SC_CLONES int within(const float* sx, const float* sy, const float* sz, int begi
   int found = 0;
   for (int k = begin; k < end; k += kLanes) {
     const F8 dx = all(x) - load(sx + k), dy = all(y) - load(sy + k), dz = all(z) - load(sz + k);
-    const I8 near = dx * dx + dy * dy + dz * dz < all(reach2);
-    if (!any(near)) continue;
-    const int lanes = std::min(kLanes, end - k);
-    for (int lane = 0; lane < lanes; ++lane) {
-      out[found] = k + lane;
-      found -= near[lane];  // true is -1
-    }
+    const I8 near = (dx * dx + dy * dy + dz * dz < all(reach2)) & (kCount < allInt(end - k));
+    found += putLanes(near, k, out + found);
   }
   return found;
 }
@@ -193,10 +188,7 @@ SC_CLONES int stillWithin(const float* places, const float* own, const int* cand
     const F8x3 o = gather3(places, candidates + k);
     const F8 dx = all(own[0]) - o.x, dy = all(own[1]) - o.y, dz = all(own[2]) - o.z;
     const I8 near = dx * dx + dy * dy + dz * dz < all(reach2);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      out[found] = candidates[k + lane];
-      found -= near[lane];
-    }
+    found += putValues(near, loadInt(candidates + k), out + found);
   }
   return found;
 }

@@ -98,7 +98,7 @@ double Solver::Impl::chooseStep_s(double longest_s) {
   }
   if (tension) dt = std::min(dt, tension->longestStep_s());
   fastest += dt * def.gravity_ms2.norm();
-  dt = std::min(dt, def.courant * def.spacing_m / fastest);
+  dt = std::min(dt, std::min(def.courant, kLongestMove) * def.spacing_m / fastest);
   if (wall > 0) dt = std::min(dt, kWallCourant * def.spacing_m / wall);
   dt = std::max(dt * stepShare, kShortestStep_s);
   return lastStep_s = longest_s / std::ceil(longest_s / dt - 1e-9);  // equal steps, no sliver

@@ -77,7 +77,6 @@ SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, in
                           int* out, WallSums& sums) {
   using P = PieceArrays;
   const F8 ox = all(px), oy = all(py), oz = all(pz), zero = all(0);
-  const I8 lanes{0, 1, 2, 3, 4, 5, 6, 7};
   F8 speed = zero, nearest2 = all(sums.nearest2);
   I8 nearest = allInt(sums.nearest);
   int found = 0;
@@ -85,16 +84,13 @@ SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, in
     const F8 cx = load(p.at(P::kCx) + k) - ox, cy = load(p.at(P::kCy) + k) - oy,
              cz = load(p.at(P::kCz) + k) - oz, reach = load(p.at(P::kReach) + k);
     const F8 away2 = cx * cx + cy * cy + cz * cz;
-    const I8 near = (away2 < reach * reach) & (reach > zero) & (lanes + allInt(k) < allInt(end));
+    const I8 near = (away2 < reach * reach) & (reach > zero) & (kCount < allInt(end - k));
     if (!any(near)) continue;
     const I8 nearer = near & (away2 < nearest2);
     nearest2 = select(nearer, away2, nearest2);
-    nearest = nearer ? lanes + allInt(k) : nearest;
+    nearest = nearer ? kCount + allInt(k) : nearest;
     speed = largest(speed, select(near, load(p.at(P::kSpeed) + k), zero));
-    for (int lane = 0; lane < kLanes; ++lane) {
-      out[found] = k + lane;
-      found -= near[lane];  // true is -1
-    }
+    found += putLanes(near, k, out + found);
   }
   for (int lane = 0; lane < kLanes; ++lane) {
     sums.normalSpeed = std::max(sums.normalSpeed, static_cast<float>(speed[lane]));
@@ -212,12 +208,8 @@ SC_CLONES int candidates(const PieceArrays& p, float px, float py, float pz, flo
     const F8 plane =
         cx * load(p.at(P::kNx) + k) + cy * load(p.at(P::kNy) + k) + cz * load(p.at(P::kNz) + k);
     const I8 near = (cx * cx + cy * cy + cz * cz <= most * most) & (most > all(0)) &
-                    (magnitude(plane) <= all(reach));
-    if (!any(near)) continue;
-    for (int lane = 0; lane < kLanes && k + lane < end; ++lane) {
-      out[found] = k + lane;
-      found -= near[lane];  // true is -1
-    }
+                    (magnitude(plane) <= all(reach)) & (kCount < allInt(end - k));
+    found += putLanes(near, k, out + found);
   }
   return found;
 }

@@ -19,14 +19,20 @@ namespace swallowclip::simd {
 inline constexpr int kLanes = 8;
 using F8 = float __attribute__((vector_size(32)));
 using I8 = int __attribute__((vector_size(32)));
+using I4 = int __attribute__((vector_size(16)));
 using F4 = float __attribute__((vector_size(16)));
 using D4 = double __attribute__((vector_size(32)));
 
+// Through a half: from the eight one by one the compiler makes eight insertions or stores.
 SC_INLINE F8 all(float x) {
-  return x - F8{};  // becomes one broadcast
+  if (__builtin_constant_p(x)) return F8{x, x, x, x, x, x, x, x};
+  const F4 half = _mm_set1_ps(x);
+  return __builtin_shufflevector(half, half, 0, 1, 2, 3, 0, 1, 2, 3);
 }
 SC_INLINE I8 allInt(int x) {
-  return x - I8{};
+  if (__builtin_constant_p(x)) return I8{x, x, x, x, x, x, x, x};
+  const I4 half = I4(_mm_set1_epi32(x));
+  return __builtin_shufflevector(half, half, 0, 1, 2, 3, 0, 1, 2, 3);
 }
 SC_INLINE F8 load(const float* p) {
   F8 v;
@@ -105,9 +111,11 @@ SC_INLINE F8 root(F8 a) {
   std::memcpy(&a, half, sizeof a);
   return a;
 }
-/// Always in this order.
+/// Always in this order: ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
 SC_INLINE float sum(F8 a) {
-  return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
+  const F4 fours = __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
+  const F4 twos = fours + __builtin_shufflevector(fours, fours, 2, 3, 2, 3);
+  return twos[0] + twos[1];
 }
 /// Eight sums in double precision.
 struct D8 {
@@ -121,9 +129,43 @@ SC_INLINE double sum(const D8& a) {
   const D4 s = a.low + a.high;
   return (s[0] + s[2]) + (s[1] + s[3]);
 }
+/// Lane k of a comparison is bit k.
+SC_INLINE unsigned bits(I8 mask) {
+  __m128 half[2];
+  std::memcpy(half, &mask, sizeof mask);
+  return static_cast<unsigned>(_mm_movemask_ps(half[0]) | _mm_movemask_ps(half[1]) << 4);
+}
 SC_INLINE bool any(I8 mask) {
-  long long part[4];
-  std::memcpy(part, &mask, sizeof part);
-  return (part[0] | part[1] | part[2] | part[3]) != 0;
+  return bits(mask) != 0;
+}
+inline constexpr I8 kCount{0, 1, 2, 3, 4, 5, 6, 7};
+/// [bits] the lanes whose bit is set, in order, then some that are not.
+struct LanesOf {
+  alignas(32) int of[256][kLanes] = {};
+  unsigned char count[256] = {};
+  constexpr LanesOf() {
+    for (int mask = 0; mask < 256; ++mask) {
+      int n = 0;
+      for (int lane = 0; lane < kLanes; ++lane)
+        if (mask >> lane & 1) of[mask][n++] = lane;
+      count[mask] = static_cast<unsigned char>(n);
+    }
+  }
+};
+inline constexpr LanesOf kLanesOf;
+/// Writes first + lane for every set lane of a mask (and rubbish behind, up to eight in all);
+/// returns how many.
+SC_INLINE int putLanes(I8 mask, int first, int* out) {
+  const unsigned m = bits(mask);
+  const I8 at = loadInt(kLanesOf.of[m]) + allInt(first);
+  std::memcpy(out, &at, sizeof at);
+  return kLanesOf.count[m];
+}
+/// The same with the values of the set lanes.
+SC_INLINE int putValues(I8 mask, I8 values, int* out) {
+  const unsigned m = bits(mask);
+  const I8 at = __builtin_shuffle(values, loadInt(kLanesOf.of[m]));
+  std::memcpy(out, &at, sizeof at);
+  return kLanesOf.count[m];
 }
 }  // namespace swallowclip::simd
