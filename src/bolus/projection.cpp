@@ -137,15 +137,7 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
     const double next = (1 + std::sqrt(1 + 4 * theta * theta)) / 2;
     step.momentum = static_cast<float>((theta - 1) / next);
     theta = next;
-    f.sweep([&](int b, int e, int) {
-      pressure.run(b, e);
-      for (int i = b; i < e; ++i) {
-        if (along_[i] == 0) continue;
-        const Vec3f w = wall_.at(i), a = acceleration_.at(i);
-        const Vec3f more = along_[i] * a - across_[i] * a.dot(w) * w;
-        for (int k = 0; k < 3; ++k) acceleration_[i][k] += more[k];
-      }
-    });
+    f.sweep([&](int b, int e, int) { findAccelerations(pressure, b, e); });
     f.sweep([&](int b, int e, int c) { parts[c] = step.run(b, e); });
     StepSweep::Sums all;
     for (const StepSweep::Sums& p : parts) {
@@ -163,6 +155,16 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
   }
   for (int i = 0; i < n; ++i) warmK[f.particle(i)] = x_[i];
   return report;
+}
+
+void Projection::findAccelerations(const PressureSweep& pressure, int begin, int end) {
+  pressure.run(begin, end);
+  for (int i = begin; i < end; ++i) {
+    if (along_[i] == 0) continue;
+    const Vec3f w = wall_.at(i), a = acceleration_.at(i);
+    const Vec3f more = along_[i] * a - across_[i] * a.dot(w) * w;
+    for (int k = 0; k < 3; ++k) acceleration_[i][k] += more[k];
+  }
 }
 
 void Projection::force(const Flow& f, float* stress) {
@@ -183,14 +185,23 @@ void Projection::accelerate(const Flow& f, double dt_s, std::vector<Vec3>& v) {
   });
 }
 
+// In single precision: what is put in is taken out again, so that momentum does not feel it.
 void Projection::pushByLastPressure(const Flow& f, double dt_s, std::vector<Vec3>& v) {
+  const PressureSweep pressure{f.lists(), x_.data(), mobility_.data(), wall_.data(),
+                               acceleration_.data()};
   for (int i = 0; i < f.count(); ++i) x_[i] = static_cast<float>(rateK_[f.particle(i)]);
-  force(f);
-  accelerate(f, dt_s, v);
+  f.sweep([&](int begin, int end, int) {
+    findAccelerations(pressure, begin, end);
+    for (int i = begin; i < end; ++i)
+      v[f.particle(i)] += dt_s * acceleration_.at(i).cast<double>();
+  });
 }
 
 void Projection::takeLastPressureBack(const Flow& f, double dt_s, std::vector<Vec3>& v) {
-  accelerate(f, -dt_s, v);
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      v[f.particle(i)] -= dt_s * mobility_[i] * acceleration_.at(i).cast<double>();
+  });
 }
 
 void Projection::stress_m2s2(const Flow& f, std::vector<double>& stress) const {

@@ -88,6 +88,7 @@ class Projection {
  private:
   ProjectionReport project(const Flow& flow, double dt_s, int least, int cap, double tolerance,
                            std::vector<double>& warmK);
+  void findAccelerations(const PressureSweep& pressure, int begin, int end);
   void force(const Flow& flow, float* stress = nullptr);
   void accelerate(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
   void takeMeanOff(int count);

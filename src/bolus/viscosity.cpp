@@ -22,6 +22,9 @@ constexpr int kCap = 300;                // iterations, assumed (100 to 500)
 constexpr double kTolerance = 1e-4;      // residual over right side, assumed (1e-5 to 1e-3)
 // Eq. 4.26 (Morris et al. 1997) is dt = 0.125 h^2 / nu; half of it, to be clear of the edge.
 constexpr double kExplicitShare = 0.0625;
+// Where neighbours exchange no more than this share of their velocities in a step, one sweep leaves
+// its square of them, as little as kTolerance: thin fluids need no solve.
+constexpr float kLittleExchange = 0.01f;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
 
@@ -96,9 +99,11 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
                                  static_cast<float>(kLeastPairShare),
                                  pair_.data(),
                                  inverse_.data()};
-  f.sweep([&](int begin, int end, int) {
+  std::vector<float> most((n + kSweepChunk - 1) / kSweepChunk);
+  f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
     for (int i = begin; i < end; ++i) {
+      most[chunk] = std::max(most[chunk], inverse_[i]);
       // Across a slit with no room for a second particle the profile is not resolved: there the
       // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
       const int p = f.particle(i);
@@ -109,6 +114,7 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
       inverse_[i] = 1 / (own_[i] + inverse_[i]);
     }
   });
+  mostExchanged_ = most.empty() ? 0 : std::ranges::max(most);
 }
 
 // Conjugate gradients, preconditioned by the diagonal, all three components at once.
@@ -219,17 +225,18 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
     viscosity_[i] =
         constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRate_s_[f.particle(i)]);
   assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
+  const bool thin = !scheme.explicitWhereStable && mostExchanged_ < kLittleExchange;
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
       const WallSample& w = f.walls[p];
       right_[i] =
           w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
-      v_.set(i, v[p]);
+      v_.set(i, thin ? Vec3(right_[i] / (1 + wallDrag_[p])) : v[p]);
     }
   });
   const Report report =
-      isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m) ? Report{} : solve(f);
+      thin || isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m) ? Report{} : solve(f);
   // The solution enters only through the antisymmetric pair terms, so that momentum is kept to
   // double precision however far the solve went.
   force_.resize(3 * n);

@@ -50,6 +50,7 @@ class Viscosity {
   Tensors evenness_;                            // [slot + 1]
   std::vector<Vec3> right_;                     // [slot] right side
   std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] 1 + wall drag; 1 / diagonal
+  float mostExchanged_ = 0;                     // largest sum of a slot's pair weights
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
 
