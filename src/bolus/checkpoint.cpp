@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000003;  // "SWBC", layout 3
+constexpr std::uint64_t kMark = 0x53574243'00000004;  // "SWBC", layout 4
 
 class Writer {
  public:

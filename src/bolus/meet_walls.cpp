@@ -11,6 +11,7 @@ namespace {
 constexpr int kWallChunk = 16;  // particles per work item of wall work
 constexpr int kDensityChunk = 512;
 constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
+constexpr double kClearMargin = 0.1;  // spacings, assumed (0.05 to 0.2): rounding, walls that speed up
 constexpr double kFilmGap = 0.3;    // spacings, DESIGN 5 (0.6 invents residue)
 // The same in a fold or cusp, where no contact faces the nearest: a slit of that width leaves a
 // fifth of the kernel. At most 1 where sheets do not cross.
@@ -87,7 +88,7 @@ int Solver::Impl::pushInside() {
     double rescued = 0;
     for (int i = begin; i < end; ++i)
       if (!isGone(particles.state[i])) {
-        rescued += followContacts(i) ? 0.0 : findContacts(i);
+        if (!isClear(i)) rescued += followContacts(i) ? 0.0 : findContacts(i);
         keepOutOfSlits(i);
         keepOnWall(i);
       }
@@ -190,6 +191,22 @@ bool Solver::Impl::findContacts(int i) {
   return wasOutside;
 }
 
+// How far a particle and the walls may have moved since its walls were last integrated.
+double Solver::Impl::movedSinceHeld_m(int i) const {
+  const Held& h = held[i];
+  return (particles.positions[i] - h.place).norm() +
+         (time_s - h.time_s) * std::max(fastestWall_ms, h.fastestWall_ms);
+}
+
+// Where the walls' integrals saw no wall near there are no contacts to look for.
+bool Solver::Impl::isClear(int i) {
+  const double reach_m = (kContactReach + kClearMargin) * def.spacing_m;
+  if (!(held[i].sample.clear_m - movedSinceHeld_m(i) > reach_m)) return false;
+  contacts[i].clear();
+  contactsAt[i] = Vec3::Constant(INFINITY);
+  return true;
+}
+
 // Before walls that stand still a small move changes distances, but no wall points worth looking
 // for.
 bool Solver::Impl::followContacts(int i) {
@@ -216,8 +233,7 @@ bool Solver::Impl::followWalls(int i) {
   Held& h = held[i];
   const Vec3 moved = particles.positions[i] - h.place;
   const double since_s = time_s - h.time_s;
-  const double wall_ms = std::max(fastestWall_ms, h.fastestWall_ms);
-  if (moved.norm() + since_s * wall_ms < kHeldMove * def.spacing_m) {
+  if (movedSinceHeld_m(i) < kHeldMove * def.spacing_m) {
     walls[i] = h.sample;
     walls[i].lambda =
         std::max(0.0, h.sample.lambda + moved.dot(h.sample.gradLambda) - since_s * h.sample.flux_s);

@@ -59,6 +59,8 @@ struct Solver::Impl {
   void sampleWalls();
   void sampleWallsOf(int i);
   bool followWalls(int i);
+  double movedSinceHeld_m(int i) const;
+  bool isClear(int i);
   bool findContacts(int i);  ///< true when the particle was outside
   bool followContacts(int i);
   bool compressible() const { return def.solver == SolverKind::wcsph && !frozen; }

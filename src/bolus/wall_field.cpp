@@ -188,6 +188,7 @@ WallSample WallField::sample(const Vec3& p) const {
   grid_.rowsAround(p, [&](int first, int last) {
     quadrature.look(at.x(), at.y(), at.z(), first, last, near, sums);
   });
+  out.clear_m = table_->support_m();
   if (sums.nearest < 0) return out;
   quadrature.integrate(at.x(), at.y(), at.z(), near, sums);
   out.lambda = sums.lambda;
@@ -198,6 +199,7 @@ WallSample WallField::sample(const Vec3& p) const {
   out.frictionVelocity = Vec3(sums.frictionVelocity.data());
   out.area = sums.area;
   out.normalSpeed_ms = sums.normalSpeed;
+  out.clear_m = std::min<double>(out.clear_m, sums.clear_m);
   out.nearestTriangle = pieces_[sums.nearest].triangle;
   return out;
 }

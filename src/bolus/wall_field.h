@@ -30,6 +30,7 @@ struct WallSample {
   double area = 0;                       ///< sum int W dS over facing walls, 1/m
   double gap_m = INFINITY;    ///< width of a slit that the particle is alone in; set by the solver
   double normalSpeed_ms = 0;  ///< fastest normal motion of a wall within reach
+  double clear_m = 0;         ///< no wall is nearer, as far as a kernel support
   int nearestTriangle = -1;   ///< by centroid; -1 when no wall is within reach
 };
 

@@ -108,6 +108,7 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
   const F8 zero = all(0), o[3] = {all(px), all(py), all(pz)};
   F8 lambda = zero, shape = zero, flux = zero, friction = zero, area = zero;
   V grad{zero, zero, zero}, drag{zero, zero, zero};
+  F8 clear = all(sums.clear_m);
   for (int rule = 0; rule < 3; ++rule)
     for (int k = 0; k < pieces.count[rule]; k += kLanes) {
       const int* at = &pieces.of[rule][k];
@@ -122,9 +123,11 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
       const V centre{(a.x + b.x + c.x) * third, (a.y + b.y + c.y) * third,
                      (a.z + b.z + c.z) * third};
       const F8 offset = dot(a, n);  // r . n, the same all over the piece
-      const F8 radius = all(kFarRadii) * (gather(p.at(P::kReach), at) - all(q.support_m));
-      const I8 close =
-          dot(centre, centre) < largest(radius * radius, all(q.spacing_m * q.spacing_m));
+      const F8 radius = gather(p.at(P::kReach), at) - all(q.support_m);
+      const F8 away2 = dot(centre, centre), far = all(kFarRadii) * radius;
+      const I8 close = away2 < largest(far * far, all(q.spacing_m * q.spacing_m));
+      // a piece is no nearer than its plane, nor than its centroid less its radius
+      clear = smallest(clear, largest(magnitude(offset), root(away2) - radius));
       if (any(close)) {
         // solid angle (van Oosterom & Strackee 1983), positive from the inner side: twice the area
         // times the distance of the plane is the triple product, without cancellation
@@ -186,6 +189,8 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
       drag.z += shear * v.z;
       area += select(front, inside, zero);
     }
+  for (int lane = 0; lane < kLanes; ++lane)
+    sums.clear_m = std::min(sums.clear_m, static_cast<float>(clear[lane]));
   sums.lambda = sum(lambda);
   sums.shape = sum(shape);
   sums.flux = sum(flux);

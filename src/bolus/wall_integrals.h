@@ -37,6 +37,7 @@ struct WallSums {
   double lambda = 0, shape = 0, flux = 0, friction = 0, area = 0;
   std::array<double, 3> gradLambda{}, frictionVelocity{};
   float normalSpeed = 0, nearest2 = 1e30f;  // m/s, m^2
+  float clear_m = 1e30f;                    ///< no wall is nearer, of those looked at
   int nearest = -1;                         ///< piece with the nearest centroid
 };
 
