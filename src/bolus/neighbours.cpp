@@ -208,7 +208,9 @@ SC_CLONES double gradients(const KernelTable& table, float volume, const List& l
   const float w0 = static_cast<float>(table.selfW());
   const float scale = volume * w0 * perHalfSupport * perHalfSupport;
   const F8 farthest = all(static_cast<float>(2 * table.support_m()));
-  F8 total = all(0), g[3] = {}, t[6] = {};
+  // one name for each sum: an array of them would live in memory
+  F8 total = all(0), sumX = all(0), sumY = all(0), sumZ = all(0);
+  F8 xx = all(0), yy = all(0), zz = all(0), xy = all(0), xz = all(0), yz = all(0);
   for (int k = 0; k < l.length; k += kLanes) {
     const F8x3 o = gather3(l.places, l.neighbours + k);
     // what fills up the list is far away
@@ -243,19 +245,20 @@ SC_CLONES double gradients(const KernelTable& table, float volume, const List& l
     store(l.gy + k, gy);
     store(l.gz + k, gz);
     total += value;
-    g[0] += gx;
-    g[1] += gy;
-    g[2] += gz;
+    sumX += gx;
+    sumY += gy;
+    sumZ += gz;
     // r |g| n n = -g d
-    t[0] -= gx * x;
-    t[1] -= gy * y;
-    t[2] -= gz * z;
-    t[3] -= gx * y;
-    t[4] -= gx * z;
-    t[5] -= gy * z;
+    xx -= gx * x;
+    yy -= gy * y;
+    zz -= gz * z;
+    xy -= gx * y;
+    xz -= gx * z;
+    yz -= gy * z;
   }
-  for (int a = 0; a < 3; ++a) l.sumG[a] = sum(g[a]);
-  for (int a = 0; a < 6; ++a) l.moment[Tensors::kAt[a]] = sum(t[a]);
+  store4(l.sumG, sum3(sumX, sumY, sumZ));
+  store4(l.moment, sum3(xx, yy, zz));
+  store4(l.moment + 4, sum3(xy, xz, yz));
   return static_cast<double>(volume) * sum(total);
 }
 }  // namespace

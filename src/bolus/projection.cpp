@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
+
 namespace swallowclip::bolus {
 namespace {
 // Step along the gradient over the diagonal, at most one over the largest eigenvalue of the scaled
@@ -55,13 +57,13 @@ void Projection::prepare(const Flow& f) {
   const Neighbours& nb = f.neighbours;
   const int n = f.count();
   for (auto* a : {&mobility_, &freedom_, &along_, &diagonal_, &source_, &x_, &y_}) {
-    a->resize(n + 1);
-    (*a)[n] = 0;
+    a->resize(n + simd::kLanes);
+    std::fill(a->begin() + n, a->end(), 0.f);
   }
   across_.resize(n);
   stress_.resize(n);
-  wall_.assign(n + 1);
-  acceleration_.assign(n + 1);
+  wall_.assign(n + simd::kLanes);
+  acceleration_.assign(n + simd::kLanes);
   velocity_.assign(n + 1);
   for (std::size_t p = 0; p < nb.slot.size(); ++p)
     if (nb.slot[p] < 0) densityK_[p] = rateK_[p] = 0;

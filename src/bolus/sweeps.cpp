@@ -22,11 +22,7 @@ SC_CLONES void pressure(const PressureSweep& s, int begin, int end) {
       z += k * load(s.pairs.gz + e);
     }
     const float k = s.k[i], m = -s.mobility[i];
-    const float* wall = s.wall + 4 * i;
-    float* a = s.a + 4 * i;
-    a[0] = m * (sum(x) + k * wall[0]);
-    a[1] = m * (sum(y) + k * wall[1]);
-    a[2] = m * (sum(z) + k * wall[2]);
+    store4(s.a + 4 * i, m * (sum3(x, y, z) + k * load4(s.wall + 4 * i)));
   }
 }
 
@@ -41,25 +37,39 @@ SC_INLINE float rateAt(const PairLists& p, const float* v, int i) {
   return sum(total);
 }
 
+/// Eight particles at a time: what follows the sums of one waits for them, that of eight does not.
 SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
-  StepSweep::Sums sums;
-  for (int i = begin; i < end; ++i) {
-    if (s.diagonal[i] <= 0) {
-      s.x[i] = s.y[i] = 0;
+  D8 residual, ahead;
+  F8 most = all(0);
+  for (int i = begin; i < end; i += kLanes) {
+    const int lanes = std::min(kLanes, end - i);
+    float rates[kLanes] = {};
+    for (int k = 0; k < lanes; ++k) rates[k] = rateAt(s.pairs, s.a, i + k);
+    const I8 slots = kCount + allInt(i);
+    int at[kLanes];
+    std::memcpy(at, &slots, sizeof at);
+    const F8x3 a = gather3(s.a, at), w = gather3(s.wall, at);
+    const F8 left = load(s.source + i) + (load(rates) + (a.x * w.x + a.y * w.y + a.z * w.z));
+    const F8 diagonal = load(s.diagonal + i), x = load(s.x + i), y = load(s.y + i);
+    const I8 part = (kCount < allInt(lanes)) & (diagonal > all(0));
+    const F8 scale = largest(diagonal, all(1e-30f)) / all(s.relax);
+    const F8 next = largest(all(s.least), y + left / scale);
+    // too much pressure is as wrong as too little, unless it is zero already
+    const F8 way = select(part, next - y, all(0)), size = magnitude(way) * scale;
+    residual.add(size);
+    most = largest(most, size);
+    ahead.add(way * select(part, next - x, all(0)));
+    const F8 on = largest(all(s.least), next + all(s.momentum) * (next - x));
+    const F8 newX = select(part, next, all(0)), newY = select(part, on, all(0));
+    if (lanes == kLanes) {
+      store(s.x + i, newX);
+      store(s.y + i, newY);
       continue;
     }
-    const float *a = s.a + 4 * i, *w = s.wall + 4 * i;
-    const float wall = a[0] * w[0] + a[1] * w[1] + a[2] * w[2];
-    const float residual = s.source[i] + (rateAt(s.pairs, s.a, i) + wall);
-    const float next = std::max(s.least, s.y[i] + s.relax * residual / s.diagonal[i]);
-    // too much pressure is as wrong as too little, unless it is zero already
-    const double left = std::abs(next - s.y[i]) * s.diagonal[i] / s.relax;
-    sums.residual += left;
-    sums.most = std::max(sums.most, left);
-    sums.ahead += static_cast<double>(next - s.y[i]) * (next - s.x[i]);
-    s.y[i] = std::max(s.least, next + s.momentum * (next - s.x[i]));
-    s.x[i] = next;
+    for (int k = 0; k < lanes; ++k) s.x[i + k] = newX[k], s.y[i + k] = newY[k];
   }
+  StepSweep::Sums sums{.residual = sum(residual), .ahead = sum(ahead)};
+  for (int k = 0; k < kLanes; ++k) sums.most = std::max<double>(sums.most, most[k]);
   return sums;
 }
 
@@ -76,11 +86,9 @@ SC_CLONES double viscosity(const ViscositySweep& s, int begin, int end) {
       oy += c * (y - o.y);
       oz += c * (z - o.z);
     }
-    float* out = s.out + 4 * i;
-    out[0] = s.own[i] * v[0] + sum(ox);
-    out[1] = s.own[i] * v[1] + sum(oy);
-    out[2] = s.own[i] * v[2] + sum(oz);
-    for (int a = 0; a < 3; ++a) product += static_cast<double>(v[a]) * out[a];
+    const F4 own = load4(v), out = s.own[i] * own + sum3(ox, oy, oz), both = own * out;
+    store4(s.out + 4 * i, out);
+    product += static_cast<double>(both[0] + both[1] + both[2]);
   }
   return product;
 }
@@ -125,17 +133,27 @@ SC_CLONES void gradient(const GradientSweep& s, int begin, int end) {
   }
 }
 
+// One name for each sum: an array of them would live in memory.
 SC_CLONES void slope(const SlopeSweep& s, int i, float* out) {
-  const F8 vx = all(s.v[4 * i]), vy = all(s.v[4 * i + 1]), vz = all(s.v[4 * i + 2]);
-  F8 t[9] = {};
+  const F8 vx = all(s.v[4 * i]), vy = all(s.v[4 * i + 1]), vz = all(s.v[4 * i + 2]), none = all(0);
+  F8 xx = none, xy = none, xz = none, yx = none, yy = none, yz = none, zx = none, zy = none,
+     zz = none;
   for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
     const F8x3 o = gather3(s.v, s.pairs.index + e);
-    const F8 d[3] = {o.x - vx, o.y - vy, o.z - vz};
-    const F8 g[3] = {load(s.pairs.gx + e), load(s.pairs.gy + e), load(s.pairs.gz + e)};
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) t[3 * a + b] += d[a] * g[b];
+    const F8 x = o.x - vx, y = o.y - vy, z = o.z - vz;
+    const F8 gx = load(s.pairs.gx + e), gy = load(s.pairs.gy + e), gz = load(s.pairs.gz + e);
+    xx += x * gx;
+    xy += x * gy;
+    xz += x * gz;
+    yx += y * gx;
+    yy += y * gy;
+    yz += y * gz;
+    zx += z * gx;
+    zy += z * gy;
+    zz += z * gz;
   }
-  for (int k = 0; k < 9; ++k) out[k] = sum(t[k]);
+  const F4 rows[3] = {sum3(xx, xy, xz), sum3(yx, yy, yz), sum3(zx, zy, zz)};
+  for (int k = 0; k < 9; ++k) out[k] = rows[k / 3][k % 3];
 }
 
 SC_CLONES void least(const LeastSweep& s, int begin, int end) {

@@ -39,6 +39,7 @@ struct PressureSweep {
 
 /// One projected step of  residual = source + sum (a_i - a_j).g_ij + a_i.wall_i:
 /// x' = max(least, y + relax residual / diagonal),  y' = max(least, x' + momentum (x' - x)).
+/// Chunks begin at multiples of eight, and all arrays have seven more slots of zeros.
 struct StepSweep {
   PairLists pairs;
   const float *a, *wall, *source;

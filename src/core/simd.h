@@ -117,6 +117,26 @@ SC_INLINE float sum(F8 a) {
   const F4 twos = fours + __builtin_shufflevector(fours, fours, 2, 3, 2, 3);
   return twos[0] + twos[1];
 }
+/// sum of x, of y, of z, and 0.
+SC_INLINE F4 sum3(F8 x, F8 y, F8 z) {
+  const auto halves = [](F8 a) {
+    return __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
+  };
+  const F4 a = halves(x), b = halves(y), c = halves(z), none{};
+  const F4 ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab2 = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const F4 cd = __builtin_shufflevector(c, none, 0, 4, 1, 5),
+           cd2 = __builtin_shufflevector(c, none, 2, 6, 3, 7);
+  const F4 first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5);
+  return first + (__builtin_shufflevector(ab, cd, 2, 3, 6, 7) + __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7));
+}
+SC_INLINE F4 load4(const float* p) {
+  F4 v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+SC_INLINE void store4(float* p, F4 v) {
+  std::memcpy(p, &v, sizeof v);
+}
 /// Eight sums in double precision.
 struct D8 {
   D4 low{}, high{};
