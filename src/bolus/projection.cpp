@@ -43,8 +43,8 @@ constexpr double kOpening = 0.05, kSettle_s = 0.3;
 constexpr int kDensityCap = 150;  // iterations, assumed (100 to 300)
 constexpr int kRateCap = 500;     // assumed (200 to 1000): a long gap of 150 spacings needs 200
 // A pressure that passes as it is would never change: plane Poiseuille flow starts 3.6 % too slowly
-// then, and 2.1 % with two or more. Places have no such memory.
-constexpr int kLeastDensity = 1, kLeastRate = 2;
+// then, and 2.1 % with two or more. Places have no such memory: they may do without any.
+constexpr int kLeastDensity = 0, kLeastRate = 2;
 constexpr float kNoLimit = 1e30f;  // m^2/s^2
 }  // namespace
 
@@ -131,9 +131,20 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
                  x_.data(),
                  y_.data()};
   std::vector<StepSweep::Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
-  double asked = 0;  // mean size of what is to be removed
-  for (int i = 0; i < n; ++i) asked += std::abs(source_[i]) / n * dt_s * dt_s;
-  tolerance = std::clamp(tolerances.share * asked, kFloor * tolerance, tolerance);
+  double asked = 0, over = 0, most = 0;  // mean size of what is to be removed; of compression
+  for (int i = 0; i < n; ++i) {
+    const double positive = full ? std::abs(source_[i]) : std::max(0.f, source_[i]);
+    asked += std::abs(source_[i]);
+    over += positive;
+    most = std::max(most, positive);
+  }
+  const double share = dt_s * dt_s / n;
+  tolerance = std::clamp(tolerances.share * asked * share, kFloor * tolerance, tolerance);
+  if (least == 0 && over * share < tolerance && most * dt_s * dt_s < kWorstLeft) {
+    report.meanError = over * share;  // no pressure at all is good enough
+    warmK.assign(warmK.size(), 0.0);
+    return report;
+  }
   double theta = 1;
   for (report.iterations = 1;; ++report.iterations) {
     const double next = (1 + std::sqrt(1 + 4 * theta * theta)) / 2;
@@ -253,6 +264,7 @@ ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<do
   takeMeanOff(f.count());
   const ProjectionReport report =
       project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, densityK_);
+  if (report.iterations == 0) return report;
   force(f);
   accelerate(f, dt_s, v);
   return report;

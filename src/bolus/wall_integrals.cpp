@@ -109,6 +109,7 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
   F8 lambda = zero, shape = zero, flux = zero, friction = zero, area = zero;
   V grad{zero, zero, zero}, drag{zero, zero, zero};
   F8 clear = all(sums.clear_m);
+  const F8 halfSupport = all(q.support_m / 2);
   for (int rule = 0; rule < 3; ++rule)
     for (int k = 0; k < pieces.count[rule]; k += kLanes) {
       const int* at = &pieces.of[rule][k];
@@ -149,7 +150,7 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
         if (q.cubicSpline) {
           const F8 perH = r * all(q.perHalfSupport);
           value = all(q.w0) * cubic::w(perH);
-          f = all(q.w0) * cubic::fPerR(perH, inverse * all(1 / q.perHalfSupport));
+          f = all(q.w0) * cubic::fPerR(perH, inverse * halfSupport);
         } else {
           const F8 nodes = r * all(q.nodesPerMetre);
           const I8 outside = nodes >= all(static_cast<float>(KernelTable::kIntervals));
