@@ -225,9 +225,12 @@ bool Solver::Impl::isClear(int i) {
 // Before walls that stand still a small move changes distances, but no wall points worth looking
 // for.
 bool Solver::Impl::followContacts(int i) {
-  const double most_m = kHeldMove * def.spacing_m;
-  if (fastestWall_ms > 0 || !wallsStood ||
-      (particles.positions[i] - contactsAt[i]).squaredNorm() > most_m * most_m)
+  if (fastestWall_ms > 0 || !wallsStood) return false;
+  const Vec3 moved = particles.positions[i] - contactsAt[i];
+  const bool alone = contacts[i].size() == 1;  // across a wall that is flat around here, or anyhow
+  const double across_m = alone ? std::abs(moved.dot(contacts[i][0].inward)) : moved.norm();
+  const double most_m = (alone ? kMoveAlong : kHeldMove) * def.spacing_m;
+  if (!(across_m < kHeldMove * def.spacing_m && moved.squaredNorm() < most_m * most_m))
     return false;
   for (Contact& c : contacts[i]) {
     c.distance_m = (particles.positions[i] - c.point).dot(c.inward);
