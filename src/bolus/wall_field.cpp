@@ -163,9 +163,7 @@ void WallField::sortPieces() {
     to[15] = static_cast<float>(t.area);
     arrays_.field[P::kReach][k] = static_cast<float>(table_->support_m() + t.radius);
     const double edge = std::max({(t.b - t.a).norm(), (t.c - t.b).norm(), (t.a - t.c).norm()});
-    arrays_.field[P::kRule][k] = edge < kOnePoint * spacing_m_      ? 0.f
-                                 : edge < kThreePoints * spacing_m_ ? 1.f
-                                                                    : 2.f;
+    arrays_.rule[k] = edge < kOnePoint * spacing_m_ ? 0 : edge < kThreePoints * spacing_m_ ? 1 : 2;
     arrays_.field[P::kSpeed][k] = static_cast<float>(t.normalSpeed);
   }
 }

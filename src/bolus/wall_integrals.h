@@ -20,11 +20,11 @@ struct PieceArrays {
     kNy,
     kNz,
     kSpeed,  // fastest along its normal
-    kRule,   // 0, 1, 2 for 1, 3, 7 quadrature points
     kFields
   };
   static constexpr int kRecord = 16;  ///< corners a, b, c, normal, velocity (3 each), area
   std::array<std::vector<float>, kFields> field;
+  std::vector<int> rule;  ///< 0, 1, 2 for 1, 3, 7 quadrature points
   std::vector<float> records;
   int count = 0;
   void resize(int pieces);
@@ -46,7 +46,7 @@ struct NearPieces {
   std::array<std::vector<int>, 3> of;
   std::array<int, 3> count{};
   int total = 0;
-  std::vector<int> all;  // of one row
+  std::vector<int> all, rules;  // of one row
   void clear() { count = {}, total = 0; }
 };
 
