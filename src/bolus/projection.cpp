@@ -94,20 +94,35 @@ void Projection::brake(const Flow& f, std::span<const double> wallDrag) {
   f.sweep([&](int begin, int end, int) { sweep.run(begin, end); });
 }
 
-/// Rate of rho* (1/s) into source_.
-void Projection::densityRate(const Flow& f, const std::vector<Vec3>& v) {
+/// source(slot, rate of rho* in 1/s) into source_; where the solve starts into x_ and y_.
+template <class Source>
+void Projection::findSource(const Flow& f, const std::vector<Vec3>& v,
+                            const std::vector<double>& warmK, Source&& source) {
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) velocity_.set(i, v[f.particle(i)]);
   });
   const RateSweep sweep{f.lists(), velocity_.data(), source_.data()};
-  f.sweep([&](int begin, int end, int) {
+  asked_.assign((f.count() + kSweepChunk - 1) / kSweepChunk, {});
+  f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
+    Asked asked;
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      source_[i] += static_cast<float>(v[p].dot(wall_.at(i).cast<double>()) -
-                                       kWallMirror * f.walls[p].flux_s);
+      const float rate = source_[i] + static_cast<float>(v[p].dot(wall_.at(i).cast<double>()) -
+                                                         kWallMirror * f.walls[p].flux_s);
+      source_[i] = static_cast<float>(source(i, static_cast<double>(rate)));
+      asked.add(source_[i], full);
+      x_[i] = y_[i] = diagonal_[i] > 0 ? static_cast<float>(warmK[p]) : 0.f;
     }
+    asked_[chunk] = asked;
   });
+  if (!full || f.count() == 0) return;
+  // What compresses all of a full room alike has no solution and no meaning.
+  double mean = 0;
+  for (int i = 0; i < f.count(); ++i) mean += source_[i] / f.count();
+  asked_.assign(1, {});
+  for (int i = 0; i < f.count(); ++i)
+    asked_[0].add(source_[i] -= static_cast<float>(mean), true);
 }
 
 // (-D a(k)) = source,  k >= 0.  source_ in 1/s^2.
@@ -116,8 +131,6 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
   ProjectionReport report;
   const int n = f.count();
   if (n == 0) return report;
-  for (int i = 0; i < n; ++i)
-    x_[i] = y_[i] = diagonal_[i] > 0 ? static_cast<float>(warmK[f.particle(i)]) : 0.f;
   const PressureSweep pressure{f.lists(), y_.data(), mobility_.data(), wall_.data(),
                                acceleration_.data()};
   StepSweep step{f.lists(),
@@ -130,18 +143,13 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
                  full ? -kNoLimit : 0.f,
                  x_.data(),
                  y_.data()};
-  std::vector<StepSweep::Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
-  double asked = 0, over = 0, most = 0;  // mean size of what is to be removed; of compression
-  for (int i = 0; i < n; ++i) {
-    const double positive = full ? std::abs(source_[i]) : std::max(0.f, source_[i]);
-    asked += std::abs(source_[i]);
-    over += positive;
-    most = std::max(most, positive);
-  }
+  parts_.resize((n + kSweepChunk - 1) / kSweepChunk);
+  Asked all;
+  for (const Asked& part : asked_) all.add(part);
   const double share = dt_s * dt_s / n;
-  tolerance = std::clamp(tolerances.share * asked * share, kFloor * tolerance, tolerance);
-  if (least == 0 && over * share < tolerance && most * dt_s * dt_s < kWorstLeft) {
-    report.meanError = over * share;  // no pressure at all is good enough
+  tolerance = std::clamp(tolerances.share * all.size * share, kFloor * tolerance, tolerance);
+  if (least == 0 && all.over * share < tolerance && all.most * dt_s * dt_s < kWorstLeft) {
+    report.meanError = all.over * share;  // no pressure at all is good enough
     warmK.assign(warmK.size(), 0.0);
     return report;
   }
@@ -151,22 +159,21 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
     step.momentum = static_cast<float>((theta - 1) / next);
     theta = next;
     f.sweep([&](int b, int e, int) { findAccelerations(pressure, b, e); });
-    f.sweep([&](int b, int e, int c) { parts[c] = step.run(b, e); });
-    StepSweep::Sums all;
-    for (const StepSweep::Sums& p : parts) {
-      all.residual += p.residual;
-      all.ahead += p.ahead;
-      all.most = std::max(all.most, p.most);
+    f.sweep([&](int b, int e, int c) { parts_[c] = step.run(b, e); });
+    StepSweep::Sums left;
+    for (const StepSweep::Sums& p : parts_) {
+      left.residual += p.residual;
+      left.ahead += p.ahead;
+      left.most = std::max(left.most, p.most);
     }
-    report.meanError = all.residual / n * dt_s * dt_s;
+    report.meanError = left.residual / n * dt_s * dt_s;
     if (report.iterations >= least && report.meanError < tolerance &&
-        all.most * dt_s * dt_s < kWorstLeft)
+        left.most * dt_s * dt_s < kWorstLeft)
       break;
     report.atCap = report.iterations >= cap;
     if (report.atCap) break;
-    if (all.ahead < 0) theta = 1;
+    if (left.ahead < 0) theta = 1;
   }
-  for (int i = 0; i < n; ++i) warmK[f.particle(i)] = x_[i];
   return report;
 }
 
@@ -180,20 +187,19 @@ void Projection::findAccelerations(const PressureSweep& pressure, int begin, int
   }
 }
 
-void Projection::force(const Flow& f, float* stress) {
+// v += dt a(x_), and x_ is where the next solve starts.
+void Projection::accelerate(const Flow& f, double dt_s, std::vector<double>& warmK,
+                            std::vector<Vec3>& v, float* stress) {
   force_.resize(3 * f.count());
   const GradientSweep gradient{f.lists(), x_.data(), force_.data(), f.neighbours.r.data(), stress};
-  f.sweep([&](int begin, int end, int) { gradient.run(begin, end); });
-}
-
-// v += dt a(x_)
-void Projection::accelerate(const Flow& f, double dt_s, std::vector<Vec3>& v) {
   f.sweep([&](int begin, int end, int) {
+    gradient.run(begin, end);
     for (int i = begin; i < end; ++i) {
       const Vec3 w = wall_.at(i).cast<double>();
       Vec3 a = -Vec3(&force_[3 * i]) - static_cast<double>(x_[i]) * w;
-      a += along_[i] * a - across_[i] * a.dot(w) * w;
+      if (along_[i] != 0) a += along_[i] * a - across_[i] * a.dot(w) * w;
       v[f.particle(i)] += dt_s * mobility_[i] * a;
+      warmK[f.particle(i)] = x_[i];
     }
   });
 }
@@ -225,48 +231,29 @@ void Projection::stress_m2s2(const Flow& f, std::vector<double>& stress) const {
   }
 }
 
-// What compresses all of a full room alike has no solution and no meaning.
-void Projection::takeMeanOff(int count) {
-  if (!full || count == 0) return;
-  double mean = 0;
-  for (int i = 0; i < count; ++i) mean += source_[i] / count;
-  for (int i = 0; i < count; ++i) source_[i] -= static_cast<float>(mean);
-}
-
 ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<double>& density,
                                             double dt_s, std::vector<Vec3>& v) {
-  densityRate(f, v);
   // what is still below rest density may close up; nothing is pulled apart
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      const double room = std::max(0.0, 1 - density[f.particle(i)]);
-      const double open =
-          full ? 0 : std::max(0.0, room - kOpening) / dt_s + std::min(room, kOpening) / kSettle_s;
-      source_[i] = static_cast<float>((source_[i] - open) / dt_s);
-    }
+  findSource(f, v, rateK_, [&](int i, double rate_s) {
+    const double room = std::max(0.0, 1 - density[f.particle(i)]);
+    const double open =
+        full ? 0 : std::max(0.0, room - kOpening) / dt_s + std::min(room, kOpening) / kSettle_s;
+    return (rate_s - open) / dt_s;
   });
-  takeMeanOff(f.count());
   const ProjectionReport report = project(f, dt_s, kLeastRate, kRateCap, tolerances.rate, rateK_);
-  force(f, stress_.data());
-  accelerate(f, dt_s, v);
+  accelerate(f, dt_s, rateK_, v, stress_.data());
   return report;
 }
 
 ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<double>& density,
                                              double dt_s, std::vector<Vec3>& v) {
-  densityRate(f, v);
   const double within_s = std::max(dt_s, kCorrection_s);
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i)
-      source_[i] =
-          static_cast<float>((source_[i] + (density[f.particle(i)] - 1) / within_s) / dt_s);
+  findSource(f, v, densityK_, [&](int i, double rate_s) {
+    return (rate_s + (density[f.particle(i)] - 1) / within_s) / dt_s;
   });
-  takeMeanOff(f.count());
   const ProjectionReport report =
       project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, densityK_);
-  if (report.iterations == 0) return report;
-  force(f);
-  accelerate(f, dt_s, v);
+  if (report.iterations > 0) accelerate(f, dt_s, densityK_, v);
   return report;
 }
 }  // namespace swallowclip::bolus

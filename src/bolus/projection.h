@@ -9,6 +9,8 @@
 // as O'Donoghue & Candes 2015). Walls enter nowhere else. Inner loops in single precision; what
 // changes a velocity is summed in double from antisymmetric terms, so that momentum is kept.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -88,11 +90,25 @@ class Projection {
  private:
   ProjectionReport project(const Flow& flow, double dt_s, int least, int cap, double tolerance,
                            std::vector<double>& warmK);
+  // Sizes of a source: of all of it, and of what is compression.
+  struct Asked {
+    double size = 0, over = 0, most = 0;
+    void add(float source, bool full) {
+      const double positive = full ? std::abs(source) : std::max(0.f, source);
+      add(Asked{std::abs(source), positive, positive});
+    }
+    void add(const Asked& o) {
+      size += o.size;
+      over += o.over;
+      most = std::max(most, o.most);
+    }
+  };
+  template <class Source>
+  void findSource(const Flow& flow, const std::vector<Vec3>& velocities,
+                  const std::vector<double>& warmK, Source&& source);
   void findAccelerations(const PressureSweep& pressure, int begin, int end);
-  void force(const Flow& flow, float* stress = nullptr);
-  void accelerate(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
-  void takeMeanOff(int count);
-  void densityRate(const Flow& flow, const std::vector<Vec3>& velocities);
+  void accelerate(const Flow& flow, double dt_s, std::vector<double>& warmK,
+                  std::vector<Vec3>& velocities, float* stress = nullptr);
 
   std::vector<double> densityK_, rateK_;  // [particle], where the next solve starts
   // [slot] and one slot of zeros
@@ -101,5 +117,7 @@ class Projection {
   Floats3 wall_, acceleration_, velocity_;
   std::vector<double> force_;  // [slot][3], of x_
   std::vector<float> stress_;  // [slot]
+  std::vector<Asked> asked_;   // [chunk]
+  std::vector<StepSweep::Sums> parts_;
 };
 }  // namespace swallowclip::bolus
