@@ -185,6 +185,8 @@ Result<void> Solver::restore(std::string_view bytes) {
   s.motion->at(s.time_s, s.wallPositions, s.wallVelocities);
   s.field.rebuild(s.wallTriangles, s.wallPositions, s.wallVelocities, box, s.skipped);
   s.lastNearest.assign(s.active.size(), -1);
+  s.gap_m.resize(n);
+  for (std::size_t i = 0; i < n; ++i) s.gap_m[i] = localGap_m(s.contacts[i]);
   s.findNeighbours();
   return {};
 }

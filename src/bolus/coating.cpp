@@ -373,6 +373,7 @@ bool Solver::Impl::joins(int i, const Vec3& place) {
   particles.velocities[i] = particles.velocities[nearest->particle];
   active[i] = 1;
   findContacts(i);
+  gap_m[i] = localGap_m(contacts[i]);
   sampleWallsOf(i);
   coating.cameBack(i);
   findNeighbours();

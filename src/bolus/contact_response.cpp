@@ -16,8 +16,8 @@ constexpr int kRescues = 4;             // times a particle outside is looked at
 constexpr double kLongestPush = 0.2;
 constexpr double kJustInside = 1e-3;  // spacings, assumed: small against the smallest gap
 
-double keptDistance(const std::vector<Contact>& contacts, double spacing_m) {
-  return std::min(kRestDistance * spacing_m, kGapShare * localGap_m(contacts));
+double keptDistance(double gap_m, double spacing_m) {
+  return std::min(kRestDistance * spacing_m, kGapShare * gap_m);
 }
 }  // namespace
 
@@ -32,9 +32,10 @@ double localGap_m(const std::vector<Contact>& c) {
   return k < 0 ? INFINITY : c[0].distance_m + c[k].distance_m;
 }
 
-void clampVelocity(const std::vector<Contact>& contacts, double spacing_m, double dt_s, Vec3& v) {
+void clampVelocity(const std::vector<Contact>& contacts, double gap_m, double spacing_m,
+                   double dt_s, Vec3& v) {
   if (contacts.empty()) return;
-  const double kept = keptDistance(contacts, spacing_m);
+  const double kept = keptDistance(gap_m, spacing_m);
   for (int pass = 0; pass < kPasses; ++pass)
     for (const Contact& c : contacts) {
       const double least = std::min(0.0, (kept - c.distance_m) / dt_s);
@@ -44,7 +45,7 @@ void clampVelocity(const std::vector<Contact>& contacts, double spacing_m, doubl
 }
 
 void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& x) {
-  const double kept = keptDistance(contacts, spacing_m);
+  const double kept = keptDistance(localGap_m(contacts), spacing_m);
   for (int pass = 0; pass < kPasses; ++pass)
     for (const Contact& c : contacts) {
       const double d = (x - c.point).dot(c.inward);

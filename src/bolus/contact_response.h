@@ -18,8 +18,10 @@ double localGap_m(const std::vector<Contact>& contacts);
 /// Index of the contact facing the nearest one, or -1.
 int facingContact(const std::vector<Contact>& contacts);
 
-/// Changes v so that the position after dt keeps its distance; never pushes, only stops.
-void clampVelocity(const std::vector<Contact>& contacts, double spacing_m, double dt_s, Vec3& v);
+/// Changes v so that the position after dt keeps its distance; never pushes, only stops. `gap_m` is
+/// localGap_m of the contacts.
+void clampVelocity(const std::vector<Contact>& contacts, double gap_m, double spacing_m,
+                   double dt_s, Vec3& v);
 
 /// Moves x away from the walls that it is nearer to than it may be.
 void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& x);

@@ -87,6 +87,7 @@ void Solver::Impl::shutBranches(double t_s) {
     if (!shut[b]) std::fill(&skipped[0] + caps[b].first, &skipped[0] + caps[b].second, 1);
 }
 
+// Then what the walls do to those that take part.
 int Solver::Impl::pushInside() {
   const int n = static_cast<int>(particles.positions.size());
   return static_cast<int>(pool.sumChunks(n, kWallChunk, [&](int begin, int end) {
@@ -94,8 +95,10 @@ int Solver::Impl::pushInside() {
     for (int i = begin; i < end; ++i)
       if (!isGone(particles.state[i])) {
         if (!isClear(i)) rescued += followContacts(i) ? 0.0 : findContacts(i);
+        gap_m[i] = localGap_m(contacts[i]);
         keepOutOfSlits(i);
         keepOnWall(i);
+        if (active[i]) sampleWallsOf(i);
       }
     return rescued;
   }));
@@ -106,12 +109,13 @@ int Solver::Impl::pushInside() {
 // there.
 void Solver::Impl::keepOutOfSlits(int i) {
   const double shut_m = kFilmGap * def.spacing_m;
-  if (carried.empty() || particles.state[i] != State::fluid || localGap_m(contacts[i]) >= shut_m)
-    return;
+  if (carried.empty() || particles.state[i] != State::fluid || gap_m[i] >= shut_m) return;
   std::vector<Contact> before;
   Vec3 place = carried[i].first;
   projectInside(field, def.spacing_m, false, place, before);
-  if (before.empty() || before[0].distance_m < 0 || localGap_m(before) < shut_m) return;
+  const double wide_m = localGap_m(before);
+  if (before.empty() || before[0].distance_m < 0 || wide_m < shut_m) return;
+  gap_m[i] = wide_m;
   particles.positions[i] = place;
   particles.velocities[i] = carried[i].second;
   contacts[i] = std::move(before);
@@ -126,7 +130,7 @@ void Solver::Impl::updateStates() {
     if (!isGone(s)) {
       const bool wasFilm = s == State::film;
       const bool betweenCrossed = !contacts[i].empty() && contacts[i][0].distance_m < 0;
-      s = betweenCrossed || localGap_m(contacts[i]) < kFilmGap * def.spacing_m ||
+      s = betweenCrossed || gap_m[i] < kFilmGap * def.spacing_m ||
                   walls[i].lambda > kFilmLambda || staysFilm(i)
               ? State::film
               : State::fluid;
@@ -162,7 +166,7 @@ bool Solver::Impl::staysFilm(std::size_t i) const {
 Vec3 Solver::Impl::filmVelocity_ms(int i) const {
   const std::vector<Contact>& c = contacts[i];
   if (c.empty()) return particles.velocities[i];  // let go by a wall, on its way into the fluid
-  if (localGap_m(c) < kFilmGap * def.spacing_m)   // held by two sheets
+  if (gap_m[i] < kFilmGap * def.spacing_m)        // held by two sheets
     return (c[0].velocity + c[facingContact(c)].velocity) / 2;
   const Vec3 along = def.gravity_ms2 - def.gravity_ms2.dot(c[0].inward) * c[0].inward;
   return c[0].velocity + (frozen ? 0.0 : filmDrainage_s) * along;
@@ -175,17 +179,10 @@ void Solver::Impl::keepOnWall(int i) {
   if (c.distance_m > farthest_m) particles.positions[i] = c.point + farthest_m * c.inward;
 }
 
-void Solver::Impl::sampleWalls() {
-  pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i)
-      if (active[i]) sampleWallsOf(i);
-  });
-}
-
 void Solver::Impl::sampleWallsOf(int i) {
   if (!followWalls(i)) walls[i] = held[i].sample = field.sample(particles.positions[i]);
   if (def.slip) walls[i].friction = walls[i].area = 0;
-  walls[i].gap_m = localGap_m(contacts[i]);
+  walls[i].gap_m = gap_m[i];
 }
 
 bool Solver::Impl::findContacts(int i) {
@@ -324,7 +321,6 @@ int Solver::Impl::meetWalls(double t_s) {
   wrapPeriods();
   evaluateWalls(t_s);
   const int rescued = pushInside();
-  sampleWalls();
   updateStates();
   updatePath(false);
   if (neighbours.follow(particles.positions, active, table, volume_m3, pool))

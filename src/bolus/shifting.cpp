@@ -52,17 +52,24 @@ void Shifting::shift(const Flow& f, const std::vector<double>& density, double s
 
 void Shifting::carry(const Flow& f, double dt_s, const std::vector<Vec3>& moving,
                      std::vector<Vec3>& v) {
-  carried_.resize(f.count());
+  const int n = f.count();
+  carried_.resize(n);
+  std::vector<Vec3> parts((n + kSweepChunk - 1) / kSweepChunk, Vec3::Zero());
+  f.sweep([&](int begin, int end, int chunk) {
+    for (int i = begin; i < end; ++i) {
+      const int p = f.particle(i);
+      // before a wall density pushes layers to and fro, and the start of plane Poiseuille flow comes
+      // out 6 % slow when that is taken for a way gone
+      const Vec3 way_ms = f.walls[p].lambda > 0 ? shift_[i] : Vec3(moving[p] - v[p]);
+      carried_[i] = dt_s * (slope_[i] * way_ms);
+      parts[chunk] += carried_[i];
+    }
+  });
   Vec3 gained = Vec3::Zero();
-  for (int i = 0; i < f.count(); ++i) {
-    const int p = f.particle(i);
-    // before a wall density pushes layers to and fro, and the start of plane Poiseuille flow comes
-    // out 6 % slow when that is taken for a way gone
-    const Vec3 way_ms = f.walls[p].lambda > 0 ? shift_[i] : Vec3(moving[p] - v[p]);
-    carried_[i] = dt_s * (slope_[i] * way_ms);
-    gained += carried_[i];
-  }
-  gained /= std::max(1, f.count());
-  for (int i = 0; i < f.count(); ++i) v[f.particle(i)] += carried_[i] - gained;
+  for (const Vec3& part : parts) gained += part;
+  gained /= std::max(1, n);
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) v[f.particle(i)] += carried_[i] - gained;
+  });
 }
 }  // namespace swallowclip::bolus

@@ -56,7 +56,6 @@ struct Solver::Impl {
   Vec3 filmVelocity_ms(int i) const;
   void keepOnWall(int i);
   void updatePath(bool all);
-  void sampleWalls();
   void sampleWallsOf(int i);
   bool followWalls(int i);
   double movedSinceHeld_m(int i) const;
@@ -87,6 +86,7 @@ struct Solver::Impl {
   Particles particles;
   std::vector<Vec3> wallPositions, wallVelocities;
   std::vector<std::vector<Contact>> contacts;
+  std::vector<double> gap_m;  // localGap_m of them
   std::vector<WallSample> walls;
   struct Held {
     WallSample sample;

@@ -66,6 +66,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   particles.s_m.assign(n, 0.0);
   particles.branch.assign(n, 0);
   contacts.assign(n, {});
+  gap_m.assign(n, INFINITY);
   walls.assign(n, {});
   held.assign(n, {});
   contactsAt.assign(n, Vec3::Constant(INFINITY));
@@ -226,7 +227,7 @@ Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
 void Solver::Impl::leaveInSlits(double dt_s) {
   stats.leftInSlits *= std::exp(-dt_s / kInfeasibleFor_s);
   for (std::size_t i = 0; i < active.size(); ++i) {
-    if (!active[i] || localGap_m(contacts[i]) > kShotOutGap * def.spacing_m) continue;
+    if (!active[i] || gap_m[i] > kShotOutGap * def.spacing_m) continue;
     const Vec3& v = particles.velocities[i];
     if ((v - contacts[i][0].velocity).norm() < kShotOut_ms && !outruns(dt_s, moving[i])) continue;
     particles.state[i] = State::film;
@@ -249,8 +250,8 @@ void Solver::Impl::move(double dt_s, Substep& report) {
       const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
       carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
       if (particles.state[i] == State::film) v[i] = moving[i] = filmVelocity_ms(i);
-      clampVelocity(contacts[i], def.spacing_m, dt_s, v[i]);
-      clampVelocity(contacts[i], def.spacing_m, dt_s, moving[i]);
+      clampVelocity(contacts[i], gap_m[i], def.spacing_m, dt_s, v[i]);
+      clampVelocity(contacts[i], gap_m[i], def.spacing_m, dt_s, moving[i]);
       if (!v[i].allFinite() ||
           !moving[i].allFinite()) {  // said by checkStep; until then it must not get into the grids
         v[i].setZero();

@@ -77,7 +77,7 @@ void Viscosity::evenOut(const WallSample& w, const float* moment, float* even) {
 }
 
 void Viscosity::assemble(const Flow& f, double density, double leastPair, double dt,
-                         double support) {
+                         double support, const std::vector<Vec3>& v) {
   const Neighbours& nb = f.neighbours;
   const int n = f.count();
   pair_.resize(nb.index.size());
@@ -112,6 +112,9 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
       wallDrag_[p] = dt * viscosity_[i] / density * std::max(kWallFactor * w.friction, slit);
       own_[i] = static_cast<float>(1 + wallDrag_[p]);
       inverse_[i] = 1 / (own_[i] + inverse_[i]);
+      right_[i] =
+          w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
+      v_.set(i, right_[i] / (1 + wallDrag_[p]));
     }
   });
   mostExchanged_ = most.empty() ? 0 : std::ranges::max(most);
@@ -132,7 +135,7 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
       rz += m * square;
     }
   };
-  // first guess: v itself
+  // first guess: v braked by the walls alone
   const ViscositySweep first = sweep(v_), step = sweep(direction_);
   std::vector<Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
   const auto total = [&] {
@@ -224,17 +227,8 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
   for (int i = 0; i < n; ++i)
     viscosity_[i] =
         constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRate_s_[f.particle(i)]);
-  assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
+  assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m, v);
   const bool thin = !scheme.explicitWhereStable && mostExchanged_ < kLittleExchange;
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      const int p = f.particle(i);
-      const WallSample& w = f.walls[p];
-      right_[i] =
-          w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
-      v_.set(i, thin ? Vec3(right_[i] / (1 + wallDrag_[p])) : v[p]);
-    }
-  });
   const Report report =
       thin || isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m) ? Report{} : solve(f);
   // The solution enters only through the antisymmetric pair terms, so that momentum is kept to

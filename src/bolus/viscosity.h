@@ -37,7 +37,7 @@ class Viscosity {
 
  private:
   void assemble(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
-                double support_m);
+                double support_m, const std::vector<Vec3>& velocities);
   static void evenOut(const WallSample& wall, const float* moment, float* even);
   bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
                           double support_m) const;
