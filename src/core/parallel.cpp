@@ -62,7 +62,7 @@ void ThreadPool::runChunks(int thread) {
       count = count_.load(std::memory_order_relaxed);
       (*body_.load(std::memory_order_relaxed))(c * chunk, std::min(n, (c + 1) * chunk), c);
     }
-  if (done > 0 && finished_.fetch_add(done, std::memory_order_acq_rel) + done == count) {
+  if (done > 0 && finished_.fetch_add(done) + done == count && waiting_) {
     std::lock_guard lock(mutex_);
     done_.notify_all();
   }
@@ -93,29 +93,32 @@ void ThreadPool::forChunks(int n, int chunk, const std::function<void(int, int, 
     for (int c = 0; c < count; ++c) body(c * chunk, std::min(n, (c + 1) * chunk), c);
     return;
   }
-  {
+  body_.store(&body, std::memory_order_relaxed);
+  n_.store(n, std::memory_order_relaxed);
+  chunk_.store(chunk, std::memory_order_relaxed);
+  count_.store(count, std::memory_order_relaxed);
+  finished_.store(0, std::memory_order_relaxed);
+  const std::uint64_t round = round_.load(std::memory_order_relaxed) + 1;
+  const std::int64_t threads = this->threads();
+  for (std::int64_t t = 0; t < threads; ++t)
+    stretches_[t].left.store(round << (2 * kBits) |
+                                 static_cast<std::uint64_t>(t * count / threads) << kBits |
+                                 static_cast<std::uint64_t>((t + 1) * count / threads),
+                             std::memory_order_release);
+  // Either a worker on its way to sleep sees the new round, or this thread sees that it sleeps.
+  round_.store(round);
+  if (asleep_ > 0) {
     std::lock_guard lock(mutex_);
-    body_.store(&body, std::memory_order_relaxed);
-    n_.store(n, std::memory_order_relaxed);
-    chunk_.store(chunk, std::memory_order_relaxed);
-    count_.store(count, std::memory_order_relaxed);
-    finished_.store(0, std::memory_order_relaxed);
-    const std::uint64_t round = round_.load(std::memory_order_relaxed) + 1;
-    const std::int64_t threads = this->threads();
-    for (std::int64_t t = 0; t < threads; ++t)
-      stretches_[t].left.store(round << (2 * kBits) |
-                                   static_cast<std::uint64_t>(t * count / threads) << kBits |
-                                   static_cast<std::uint64_t>((t + 1) * count / threads),
-                               std::memory_order_release);
-    round_.store(round, std::memory_order_release);
+    wake_.notify_all();
   }
-  if (asleep_ > 0) wake_.notify_all();
   runChunks(0);
-  const auto done = [&] { return finished_.load(std::memory_order_acquire) == count; };
+  const auto done = [&] { return finished_.load() == count; };
   for (int look = 0; look < kLooks && !done(); ++look) pause();
   if (done()) return;
   std::unique_lock lock(mutex_);
+  waiting_ = true;
   done_.wait(lock, done);
+  waiting_ = false;
 }
 
 double ThreadPool::sumChunks(int n, int chunk, const std::function<double(int, int)>& term,

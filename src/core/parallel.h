@@ -54,6 +54,6 @@ class ThreadPool {
   std::atomic<int> n_{0}, chunk_{1}, count_{0}, asleep_{0};
   alignas(64) std::atomic<int> finished_{0};
   alignas(64) std::atomic<std::uint64_t> round_{0};
-  std::atomic<bool> stop_{false};
+  std::atomic<bool> stop_{false}, waiting_{false};
 };
 }  // namespace swallowclip
