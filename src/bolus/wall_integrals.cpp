@@ -43,9 +43,11 @@ struct Rule {
   int count;
 };
 constexpr Rule kRules[] = {{kRule1, 1}, {kRule3, 3}, {kRule7, 7}};
-// From this many radii (and a spacing) on the solid angle is left to the quadrature as well; within
-// 0.1 % of lambda (wall_field_test).
-constexpr float kFarRadii = 2.5f;
+// From this many radii (and a spacing, but for seven points) on the solid angle is left to the
+// quadrature as well, and beyond the kernel anyway: what remains of G is smoother than F. Within 0.1 % of lambda
+// (wall_field_test).
+constexpr float kFarRadii[] = {2.5f, 2.5f, 1.8f};
+constexpr float kFarSpacings[] = {1, 1, 0};
 // Beyond this many supports the kernel is small on all of a piece, and three points do for seven:
 // grad lambda within 3e-4 over a spacing instead of 1.2e-4 (triangles of 1.9 spacings).
 constexpr float kFewPoints = 1.05f;
@@ -117,6 +119,7 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
   F8 lambda = zero, shape = zero, flux = zero, friction = zero, area = zero;
   V grad{zero, zero, zero}, drag{zero, zero, zero};
   F8 clear = all(sums.clear_m);
+  const F8 few2 = all(kFewPoints * kFewPoints * q.support_m * q.support_m);
   const F8 halfSupport = all(q.support_m / 2);
   for (int rule = 0; rule < 3; ++rule)
     for (int k = 0; k < pieces.count[rule]; k += kLanes) {
@@ -133,8 +136,9 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
                      (a.z + b.z + c.z) * third};
       const F8 offset = dot(a, n);  // r . n, the same all over the piece
       const F8 radius = gather(p.at(P::kReach), at) - all(q.support_m);
-      const F8 away2 = dot(centre, centre), far = all(kFarRadii) * radius;
-      const I8 close = away2 < largest(far * far, all(q.spacing_m * q.spacing_m));
+      const F8 away2 = dot(centre, centre), far = all(kFarRadii[rule]) * radius;
+      const F8 least = all(kFarSpacings[rule] * q.spacing_m);
+      const I8 close = away2 < smallest(few2, largest(far * far, least * least));
       // a piece is no nearer than its plane, nor than its centroid less its radius
       clear = smallest(clear, largest(magnitude(offset), root(away2) - radius));
       if (any(close)) {
