@@ -119,7 +119,7 @@ void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std
   owner_.resize(total + 1);
   shift_.resize(total);
   for (auto* s : {&sx_, &sy_, &sz_}) s->assign(total + simd::kLanes, kFarAway);
-  places_.assign(total + 1);
+  places_.shape(total, 1);
   int k = 0;
   for (int s = 0; s < total; ++s) {
     const Point& p = all[order[s]];
@@ -312,8 +312,8 @@ void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_
   index.resize(start[count]);
   for (auto* g : {&r, &gx, &gy, &gz}) g->resize(start[count]);
   sumW.resize(count);
-  sumG.assign(count);
-  moment.assign(count);
+  sumG.shape(count, 0);
+  moment.shape(count, 0);
   measure(kernel, volume_m3, pool);
 }
 

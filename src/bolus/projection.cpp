@@ -62,9 +62,9 @@ void Projection::prepare(const Flow& f) {
   }
   across_.resize(n);
   stress_.resize(n);
-  wall_.assign(n + simd::kLanes);
-  acceleration_.assign(n + simd::kLanes);
-  velocity_.assign(n + 1);
+  wall_.shape(n, simd::kLanes);
+  acceleration_.shape(n, simd::kLanes);
+  velocity_.shape(n, 1);
   for (std::size_t p = 0; p < nb.slot.size(); ++p)
     if (nb.slot[p] < 0) densityK_[p] = rateK_[p] = 0;
   f.sweep([&](int begin, int end, int) {

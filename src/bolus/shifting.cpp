@@ -21,11 +21,12 @@ constexpr double kFullDensity = 0.97;  // of all neighbours: no free surface nea
 void Shifting::shift(const Flow& f, const std::vector<double>& density, double spacing_m,
                      const std::vector<Vec3>& v, std::vector<Vec3>& moving) {
   const int n = f.count();
-  slope_.assign(n, Mat3::Zero());
-  shift_.assign(n, Vec3::Zero());
-  density_.assign(n + 1, INFINITY);
+  slope_.resize(n);
+  shift_.resize(n);
+  density_.resize(n + 1);
+  density_[n] = INFINITY;
   least_.resize(n);
-  velocity_.assign(n + 1);
+  velocity_.shape(n, 1);
   moving = v;
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
@@ -38,6 +39,8 @@ void Shifting::shift(const Flow& f, const std::vector<double>& density, double s
   f.sweep([&](int begin, int end, int) {
     least.run(begin, end);
     for (int i = begin; i < end; ++i) {
+      slope_[i].setZero();
+      shift_[i].setZero();
       if (least_[i] < kFullDensity) continue;
       const int p = f.particle(i);
       Vec3 gradient = spacing_m * (f.walls[p].gradLambda + f.neighbours.sumG.at(i).cast<double>());

@@ -2,6 +2,7 @@
 // The loops over neighbour lists that take a solver's time, eight neighbours at once. Arrays are
 // [slot] of Neighbours with one more slot of zeros behind them, which the lists' padding names.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -18,7 +19,11 @@ struct PairLists {
 /// Vectors of three, each in four floats, so that one is fetched at once.
 struct Floats3 {
   std::vector<float> of;
-  void assign(std::size_t n) { of.assign(4 * n, 0.f); }
+  /// n to be written, and zeros behind them.
+  void shape(std::size_t n, std::size_t behind) {
+    of.resize(4 * (n + behind));
+    std::fill(of.begin() + 4 * n, of.end(), 0.f);
+  }
   const float *data() const { return of.data(); }
   float *data() { return of.data(); }
   float *operator[](int i) { return &of[4 * static_cast<std::size_t>(i)]; }
@@ -93,7 +98,10 @@ struct GradientSweep {
 struct Tensors {
   std::vector<float> of;
   static constexpr int kAt[6] = {0, 1, 2, 4, 5, 6};
-  void assign(int n) { of.assign(8 * static_cast<std::size_t>(n), 0.f); }
+  void shape(std::size_t n, std::size_t behind) {
+    of.resize(8 * (n + behind));
+    std::fill(of.begin() + 8 * n, of.end(), 0.f);
+  }
   float *operator[](int i) { return &of[8 * static_cast<std::size_t>(i)]; }
   const float *operator[](int i) const { return &of[8 * static_cast<std::size_t>(i)]; }
 };

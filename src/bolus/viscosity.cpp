@@ -81,8 +81,9 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
   const Neighbours& nb = f.neighbours;
   const int n = f.count();
   pair_.resize(nb.index.size());
-  mu_.assign(n + 1, 1.f);
-  evenness_.assign(n + 1);
+  mu_.resize(n + 1);
+  mu_[n] = 1;
+  evenness_.shape(n, 1);
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       mu_[i] = static_cast<float>(viscosity_[i]);
@@ -210,8 +211,9 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
   viscosity_.resize(n);
   right_.resize(n);
   inverse_.resize(n);
-  own_.assign(n + 1, 0.f);
-  for (auto* a : {&v_, &residual_, &direction_, &product_}) a->assign(n + 1);
+  own_.resize(n + 1);
+  own_[n] = 0;
+  for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
   const bool constant = scheme.override_Pas > 0 || fluid.model == RheologyModel::newtonian;
   const double constant_Pas = scheme.override_Pas > 0 ? scheme.override_Pas : fluid.viscosity_Pas;
   const auto findRates = [&] {
