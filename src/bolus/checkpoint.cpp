@@ -91,6 +91,7 @@ void all(Archive& a, Impl& s) {
   a(s.fastestWall_ms);
   a(s.lastStep_s);
   a(s.viscosity.shearRates_s());
+  a(s.viscosity.drags_ms2());
   a(s.wallTriangles);
   a(s.caps);
   a(s.shutBefore);

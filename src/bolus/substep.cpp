@@ -73,6 +73,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   active.assign(n, 1);
   lastNearest.assign(n, -1);
   projection.resize(static_cast<int>(n));
+  viscosity.forget();
   wcsph.start();
   coating.start(motion->triangles.size(), n);
   lastStep_s = 0;

@@ -175,25 +175,33 @@ SC_INLINE F8 twice(const Tensor8& t, F8 x, F8 y, F8 z) {  // n.T.n
          all(2) * (x * y * t.xy + x * z * t.xz + y * z * t.yz);
 }
 
+/// c_ij of eight pairs from e on.
+SC_INLINE F8 pairWeights(const PairViscositySweep& s, const Tensor8& own, F8 mu, int e) {
+  const int* at = s.pairs.index + e;
+  const F8 other = gather(s.viscosity, at), r = load(s.r + e);
+  const F8 x = load(s.pairs.gx + e), y = load(s.pairs.gy + e), z = load(s.pairs.gz + e);
+  const F8 square = x * x + y * y + z * z;
+  const F8x3 straight = gather3<8>(s.evenness, at), mixed = gather3<8>(s.evenness + 4, at);
+  const Tensor8 both2{own.xx + straight.x, own.yy + straight.y, own.zz + straight.z,
+                      own.xy + mixed.x,    own.xz + mixed.y,    own.yz + mixed.z};
+  const F8 even =
+      largest(all(2 * s.leastEven), twice(both2, x, y, z) / largest(square, all(1e-30f)));
+  // harmonic: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
+  const F8 both = largest(all(s.leastPair), all(2) * mu * other / (mu + other));
+  return all(s.scale) * both * even * root(square) * r / (r * r + all(s.eta2));
+}
+SC_INLINE Tensor8 evennessOf(const PairViscositySweep& s, int i) {
+  const float* b = s.evenness + 8 * i;
+  return {all(b[0]), all(b[1]), all(b[2]), all(b[4]), all(b[5]), all(b[6])};
+}
+
 SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     const F8 mu = all(s.viscosity[i]);
-    const float* b = s.evenness + 8 * i;
-    const Tensor8 own{all(b[0]), all(b[1]), all(b[2]), all(b[4]), all(b[5]), all(b[6])};
+    const Tensor8 own = evennessOf(s, i);
     F8 total = all(0);
     for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
-      const int* at = s.pairs.index + e;
-      const F8 other = gather(s.viscosity, at), r = load(s.r + e);
-      const F8 x = load(s.pairs.gx + e), y = load(s.pairs.gy + e), z = load(s.pairs.gz + e);
-      const F8 square = x * x + y * y + z * z;
-      const F8x3 straight = gather3<8>(s.evenness, at), mixed = gather3<8>(s.evenness + 4, at);
-      const Tensor8 both2{own.xx + straight.x, own.yy + straight.y, own.zz + straight.z,
-                          own.xy + mixed.x,    own.xz + mixed.y,    own.yz + mixed.z};
-      const F8 even =
-          largest(all(2 * s.leastEven), twice(both2, x, y, z) / largest(square, all(1e-30f)));
-      // harmonic: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
-      const F8 both = largest(all(s.leastPair), all(2) * mu * other / (mu + other));
-      const F8 c = all(s.scale) * both * even * root(square) * r / (r * r + all(s.eta2));
+      const F8 c = pairWeights(s, own, mu, e);
       store(s.c + e, c);
       total += c;
     }

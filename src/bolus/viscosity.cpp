@@ -76,22 +76,47 @@ void Viscosity::evenOut(const WallSample& w, const float* moment, float* even) {
         scale * ((k < 3 ? 1 : 0) - kIsotropic * scale * (m[k] - (k < 3 ? third : 0))));
 }
 
-void Viscosity::assemble(const Flow& f, double density, double leastPair, double dt,
-                         double support, const std::vector<Vec3>& v) {
-  const Neighbours& nb = f.neighbours;
+// All that a slot has to itself.
+void Viscosity::prepare(const Flow& f, const Fluid& fluid, double constant_Pas, double dt,
+                        const std::vector<Vec3>& v) {
   const int n = f.count();
-  pair_.resize(nb.index.size());
-  mu_.resize(n + 1);
-  mu_[n] = 1;
+  viscosity_.resize(n);
+  force_.resize(3 * n);
+  right_.resize(n);
+  inverse_.resize(n);
+  for (auto* a : {&mu_, &own_}) {
+    a->resize(n + 1);
+    (*a)[n] = 1;
+  }
   evenness_.shape(n, 1);
+  for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
+      const int p = f.particle(i);
+      const WallSample& w = f.walls[p];
+      viscosity_[i] =
+          constant_Pas > 0 ? constant_Pas : apparentViscosity_Pas(fluid, shearRate_s_[p]);
       mu_[i] = static_cast<float>(viscosity_[i]);
-      evenOut(f.walls[f.particle(i)], nb.moment[i], evenness_[i]);
+      evenOut(w, f.neighbours.moment[i], evenness_[i]);
+      // Across a slit with no room for a second particle the profile is not resolved: there the
+      // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
+      const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
+      wallDrag_[p] =
+          dt * viscosity_[i] / fluid.density_kgm3 * std::max(kWallFactor * w.friction, slit);
+      own_[i] = static_cast<float>(1 + wallDrag_[p]);
+      right_[i] =
+          w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
+      v_.set(i, right_[i] / (1 + wallDrag_[p]));
     }
   });
+}
+
+// Weights of pairs, and their sums in inverse_.
+void Viscosity::weighPairs(const Flow& f, double density, double leastPair, double dt,
+                           double support) {
+  pair_.resize(f.neighbours.index.size());
   const PairViscositySweep sweep{f.lists(),
-                                 nb.r.data(),
+                                 f.neighbours.r.data(),
                                  mu_.data(),
                                  evenness_.of.data(),
                                  static_cast<float>(dt / density),  // 2, and half of two evennesses
@@ -100,29 +125,16 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
                                  static_cast<float>(kLeastPairShare),
                                  pair_.data(),
                                  inverse_.data()};
-  std::vector<float> most((n + kSweepChunk - 1) / kSweepChunk);
+  std::vector<float> most((f.count() + kSweepChunk - 1) / kSweepChunk);
   f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
-    for (int i = begin; i < end; ++i) {
-      most[chunk] = std::max(most[chunk], inverse_[i]);
-      // Across a slit with no room for a second particle the profile is not resolved: there the
-      // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
-      const int p = f.particle(i);
-      const WallSample& w = f.walls[p];
-      const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
-      wallDrag_[p] = dt * viscosity_[i] / density * std::max(kWallFactor * w.friction, slit);
-      own_[i] = static_cast<float>(1 + wallDrag_[p]);
-      inverse_[i] = 1 / (own_[i] + inverse_[i]);
-      right_[i] =
-          w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
-      v_.set(i, right_[i] / (1 + wallDrag_[p]));
-    }
+    for (int i = begin; i < end; ++i) most[chunk] = std::max(most[chunk], inverse_[i]);
   });
   mostExchanged_ = most.empty() ? 0 : std::ranges::max(most);
 }
 
 // Conjugate gradients, preconditioned by the diagonal, all three components at once.
-Viscosity::Report Viscosity::solve(const Flow& f) {
+Viscosity::Report Viscosity::solve(const Flow& f, double dt_s, const std::vector<Vec3>& v) {
   const int n = f.count();
   const auto sweep = [&](const Floats3& v) {
     return ViscositySweep{f.lists(), pair_.data(), own_.data(), v.data(), product_.data()};
@@ -136,7 +148,6 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
       rz += m * square;
     }
   };
-  // first guess: v braked by the walls alone
   const ViscositySweep first = sweep(v_), step = sweep(direction_);
   std::vector<Sums> parts((n + kSweepChunk - 1) / kSweepChunk);
   const auto total = [&] {
@@ -148,6 +159,14 @@ Viscosity::Report Viscosity::solve(const Flow& f) {
     }
     return all;
   };
+  // what viscosity did last time it will nearly do again
+  f.sweep([&](int b, int e, int) {
+    for (int i = b; i < e; ++i) {
+      const int p = f.particle(i);
+      v_.set(i, v[p] + dt_s * drag_ms2_[p]);
+      inverse_[i] = 1 / (own_[i] + inverse_[i]);
+    }
+  });
   f.sweep([&](int b, int e, int c) {
     first.run(b, e);
     Sums part;
@@ -205,47 +224,50 @@ bool Viscosity::isStableExplicitly(const Scheme& scheme, double density, double 
 
 Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Scheme& scheme,
                                    double dt_s, double support_m, std::vector<Vec3>& v) {
-  const int n = f.count();
   wallDrag_.assign(v.size(), 0.0);
   shearRate_s_.resize(v.size(), NAN);
-  viscosity_.resize(n);
-  right_.resize(n);
-  inverse_.resize(n);
-  own_.resize(n + 1);
-  own_[n] = 0;
-  for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
+  drag_ms2_.resize(v.size(), Vec3::Zero());
   const bool constant = scheme.override_Pas > 0 || fluid.model == RheologyModel::newtonian;
-  const double constant_Pas = scheme.override_Pas > 0 ? scheme.override_Pas : fluid.viscosity_Pas;
-  const auto findRates = [&] {
-    for (int i = 0; i < n; ++i) v_.set(i, v[f.particle(i)]);
-    const SlopeSweep slopes{f.lists(), v_.data()};
-    f.sweep([&](int begin, int end, int) {
-      for (int i = begin; i < end; ++i)
-        if (double& rate = shearRate_s_[f.particle(i)]; std::isnan(rate))
-          rate = shearRate_s(velocityGradient_s(f, slopes, v[f.particle(i)], i));
-    });
-  };
-  if (!constant) findRates();
-  for (int i = 0; i < n; ++i)
-    viscosity_[i] =
-        constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRate_s_[f.particle(i)]);
-  assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m, v);
-  const bool thin = !scheme.explicitWhereStable && mostExchanged_ < kLittleExchange;
-  const Report report =
-      thin || isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m) ? Report{} : solve(f);
+  const double constant_Pas = scheme.override_Pas > 0 ? scheme.override_Pas
+                              : constant              ? fluid.viscosity_Pas
+                                                      : 0;
+  if (!constant) findRates(f, v);
+  prepare(f, fluid, constant_Pas, dt_s, v);
+  weighPairs(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
+  Report report;
+  if (mostExchanged_ >= kLittleExchange &&
+      !isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m))
+    report = solve(f, dt_s, v);
   // The solution enters only through the antisymmetric pair terms, so that momentum is kept to
   // double precision however far the solve went.
-  force_.resize(3 * n);
   const DragSweep drag{f.lists(), pair_.data(), v_.data(), force_.data()};
   f.sweep([&](int begin, int end, int) {
     drag.run(begin, end);
-    for (int i = begin; i < end; ++i)
-      v[f.particle(i)] = (right_[i] - Vec3(&force_[3 * i])) / (1 + wallDrag_[f.particle(i)]);
+    for (int i = begin; i < end; ++i) {
+      const int p = f.particle(i);
+      const Vec3 next = (right_[i] - Vec3(&force_[3 * i])) / (1 + wallDrag_[p]);
+      drag_ms2_[p] = (next - v[p]) / dt_s;
+      v[p] = next;
+    }
   });
   // The next step's viscosities follow from this field, before pressure has its say: what it does
   // to single particles is noise, which would thin a fluid that ought to be stiff.
   shearRate_s_.assign(v.size(), NAN);
-  if (!constant) findRates();
+  if (!constant) findRates(f, v);
   return report;
+}
+
+// Of those that are not known yet.
+void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
+  v_.shape(f.count(), 1);
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) v_.set(i, v[f.particle(i)]);
+  });
+  const SlopeSweep slopes{f.lists(), v_.data()};
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i)
+      if (double& rate = shearRate_s_[f.particle(i)]; std::isnan(rate))
+        rate = shearRate_s(velocityGradient_s(f, slopes, v[f.particle(i)], i));
+  });
 }
 }  // namespace swallowclip::bolus

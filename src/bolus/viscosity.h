@@ -29,28 +29,39 @@ class Viscosity {
   Report apply(const Flow& flow, const Fluid& fluid, const Scheme& scheme, double dt_s,
                double support_m, std::vector<Vec3>& velocities);
 
+  /// Before a new run.
+  void forget() { *this = {}; }
+
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
   const std::vector<double>& wallDrag() const { return wallDrag_; }
 
   /// [particle] of the last step, 1/s: what the next one's viscosities follow from.
   std::vector<double>& shearRates_s() { return shearRate_s_; }
 
+  /// [particle] acceleration by the last step's viscosity: where the next solve starts from.
+  std::vector<Vec3>& drags_ms2() { return drag_ms2_; }
+
  private:
-  void assemble(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
-                double support_m, const std::vector<Vec3>& velocities);
+  void prepare(const Flow& flow, const Fluid& fluid, double constant_Pas, double dt_s,
+               const std::vector<Vec3>& velocities);
+  void weighPairs(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
+                  double support_m);
+  void findRates(const Flow& flow, const std::vector<Vec3>& velocities);
   static void evenOut(const WallSample& wall, const float* moment, float* even);
   bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
                           double support_m) const;
-  Report solve(const Flow& flow);
+  Report solve(const Flow& flow, double dt_s, const std::vector<Vec3>& velocities);
 
   std::vector<double> shearRate_s_;             // [particle] NaN where not yet known
+  std::vector<Vec3> drag_ms2_;                  // [particle]
   std::vector<double> wallDrag_;                // [particle]
   std::vector<double> viscosity_, force_;       // [slot]; [slot][3]
   std::vector<float> mu_;                       // [slot + 1]
   Tensors evenness_;                            // [slot + 1]
   std::vector<Vec3> right_;                     // [slot] right side
-  std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] 1 + wall drag; 1 / diagonal
-  float mostExchanged_ = 0;                     // largest sum of a slot's pair weights
+  std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] 1 + wall drag; [slot] sum of
+                                                // the pairs' weights, then 1 / diagonal
+  float mostExchanged_ = 0;                     // the largest sum of a slot's weights
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
 
