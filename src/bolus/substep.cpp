@@ -173,8 +173,8 @@ void Solver::Impl::project(double dt_s, Substep& report) {
 // A step that speeds a particle up beyond the reach of its contacts is taken again, half as long.
 double Solver::Impl::projectInReach(double dt_s, Substep& report) {
   const std::vector<Vec3> before = particles.velocities;
-  const std::vector<double> rate = projection.rateWarm(), density = projection.densityWarm(),
-                            shear = viscosity.shearRates_s();
+  const std::vector<double> rate = projection.rateWarm(), density = projection.densityWarm();
+  const Viscosity::ShearRates shear = viscosity.shearRates();
   for (const double least_s = kShortestRetry * dt_s;; dt_s /= 2) {
     project(dt_s, report);
     const auto outrun = [&](const Vec3& v) { return outruns(dt_s, v); };
@@ -185,7 +185,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
     particles.velocities = before;
     projection.rateWarm() = rate;
     projection.densityWarm() = density;
-    viscosity.shearRates_s() = shear;
+    viscosity.shearRates() = shear;
   }
 }
 

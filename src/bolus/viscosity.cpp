@@ -22,6 +22,8 @@ constexpr int kCap = 300;                // iterations, assumed (100 to 500)
 constexpr double kTolerance = 1e-4;      // residual over right side, assumed (1e-5 to 1e-3)
 // Eq. 4.26 (Morris et al. 1997) is dt = 0.125 h^2 / nu; half of it, to be clear of the edge.
 constexpr double kExplicitShare = 0.0625;
+// Share of the kernel beyond walls, counted at most, assumed (0.4 to 0.6): an edge has 0.4.
+constexpr double kMostLambda = 0.5;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
 
@@ -47,6 +49,12 @@ Mat3 velocityGradient_s(const Flow& f, const SlopeSweep& slopes, const Vec3& v, 
   // What the same sums make of a linear field (Bonet & Lok 1999, sec. 3.3): among disordered
   // particles 10 % off, which a stiff plug would take for shear.
   return moment.determinant() > kLeastMoment ? Mat3(gradient * moment.inverse()) : gradient;
+}
+Mat3 gradientBeforeWall_s(const WallSample& w, const Vec3& v, const Mat3& gradient) {
+  const double steep = w.gradLambda.norm();
+  if (!(w.friction > 0 && w.area > 0 && steep > 0)) return gradient;
+  const Vec3 n = w.gradLambda / steep;
+  return gradient + ((w.frictionVelocity - w.friction * v) / w.area - gradient * n) * n.transpose();
 }
 double shearRate_s(const Mat3& gradient) {
   const Mat3 d = 0.5 * (gradient + gradient.transpose());
@@ -104,8 +112,10 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
       const int p = f.particle(i);
       const WallSample& w = f.walls[p];
       const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
-      wallDrag_[p] = dt * viscosity_[i] / density * std::max(kWallFactor * w.friction, slit);
-      own_[i] = static_cast<float>(1 + wallDrag_[p]);
+      inertia_[i] = 1 - std::min(w.lambda, kMostLambda);
+      const double shear = wallViscosity_[i] * kWallFactor * w.friction / inertia_[i];
+      wallDrag_[p] = dt / density * std::max(shear, viscosity_[i] * slit);
+      own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));
       inverse_[i] = 1 / (own_[i] + inverse_[i]);
     }
   });
@@ -193,38 +203,53 @@ bool Viscosity::isStableExplicitly(const Scheme& scheme, double density, double 
   return dt * most / density <= kExplicitShare * support * support / 4;
 }
 
+void Viscosity::ShearRates::forget(std::size_t particles) {
+  own_s.assign(particles, NAN);
+  wall_s.assign(particles, NAN);
+}
+
+// Those that are not known yet.
+void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
+  for (int i = 0; i < f.count(); ++i) v_.set(i, v[f.particle(i)]);
+  const SlopeSweep slopes{f.lists(), v_.data()};
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const int p = f.particle(i);
+      if (!std::isnan(shearRates_.own_s[p])) continue;
+      const Mat3 gradient = velocityGradient_s(f, slopes, v[p], i);
+      shearRates_.own_s[p] = shearRate_s(gradient);
+      shearRates_.wall_s[p] = shearRate_s(gradientBeforeWall_s(f.walls[p], v[p], gradient));
+    }
+  });
+}
+
 Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Scheme& scheme,
                                    double dt_s, double support_m, std::vector<Vec3>& v) {
   const int n = f.count();
   wallDrag_.assign(v.size(), 0.0);
-  shearRate_s_.resize(v.size(), NAN);
-  viscosity_.resize(n);
+  if (shearRates_.own_s.size() != v.size()) shearRates_.forget(v.size());
+  for (auto* a : {&viscosity_, &wallViscosity_, &inertia_}) a->resize(n);
   right_.resize(n);
   inverse_.resize(n);
   own_.assign(n + 1, 0.f);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->assign(n + 1);
   const bool constant = scheme.override_Pas > 0 || fluid.model == RheologyModel::newtonian;
   const double constant_Pas = scheme.override_Pas > 0 ? scheme.override_Pas : fluid.viscosity_Pas;
-  const auto findRates = [&] {
-    for (int i = 0; i < n; ++i) v_.set(i, v[f.particle(i)]);
-    const SlopeSweep slopes{f.lists(), v_.data()};
-    f.sweep([&](int begin, int end, int) {
-      for (int i = begin; i < end; ++i)
-        if (double& rate = shearRate_s_[f.particle(i)]; std::isnan(rate))
-          rate = shearRate_s(velocityGradient_s(f, slopes, v[f.particle(i)], i));
-    });
-  };
-  if (!constant) findRates();
-  for (int i = 0; i < n; ++i)
-    viscosity_[i] =
-        constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRate_s_[f.particle(i)]);
+  if (!constant) findRates(f, v);
+  for (int i = 0; i < n; ++i) {
+    const int p = f.particle(i);
+    viscosity_[i] = constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRates_.own_s[p]);
+    wallViscosity_[i] =
+        constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRates_.wall_s[p]);
+  }
   assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
       const WallSample& w = f.walls[p];
-      right_[i] =
-          w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
+      right_[i] = v[p];
+      if (w.friction > 0) right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
+      right_[i] *= inertia_[i];
       v_.set(i, v[p]);
     }
   });
@@ -237,12 +262,13 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
   f.sweep([&](int begin, int end, int) {
     drag.run(begin, end);
     for (int i = begin; i < end; ++i)
-      v[f.particle(i)] = (right_[i] - Vec3(&force_[3 * i])) / (1 + wallDrag_[f.particle(i)]);
+      v[f.particle(i)] =
+          (right_[i] - Vec3(&force_[3 * i])) / (inertia_[i] * (1 + wallDrag_[f.particle(i)]));
   });
   // The next step's viscosities follow from this field, before pressure has its say: what it does
   // to single particles is noise, which would thin a fluid that ought to be stiff.
-  shearRate_s_.assign(v.size(), NAN);
-  if (!constant) findRates();
+  shearRates_.forget(v.size());
+  if (!constant) findRates(f, v);
   return report;
 }
 }  // namespace swallowclip::bolus

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Implicit viscosity for every fluid, thin or thick: the pairwise Laplacian of Morris, Fox & Zhu
 // (1997, eq. 22), with the walls' no-slip friction inside the same matrix-free conjugate gradients:
-//   a_i = 2 sum nu_ij V v_ij (x_ij . gradW_ij) / (r^2 + eta^2) - 2 nu_i friction (v_i - v_wall)
+//   (1 - lambda_i) a_i = 2 sum nu_ij V v_ij (x_ij . gradW_ij) / (r^2 + eta^2)
+//                        - 2 nu_wall friction (v_i - v_wall)
+// Where stress grows linearly from a wall, the right side is 1 - lambda times its gradient: pairs
+// give 2 tau(d) |grad lambda| + (1 - lambda - d |grad lambda|) tau', the wall takes 2 |grad lambda|
+// times the stress half way to it, tau(d) - tau' d / 2; so nu_wall is that of the shear rate there.
+// On the left, as a share of the particle's inertia, 1 - lambda (the gamma by which Ferrand et al.
+// 2013 divide) leaves the system symmetric.
 // On a cubic lattice it gives 1.01 of the viscosity; the form that also keeps angular momentum
 // (Monaghan 2005: 10 v.x / r^2 gradW) gives 0.71 of it with so few neighbours.
 #pragma once
@@ -32,8 +38,13 @@ class Viscosity {
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
   const std::vector<double>& wallDrag() const { return wallDrag_; }
 
-  /// [particle] of the last step, 1/s: what the next one's viscosities follow from.
-  std::vector<double>& shearRates_s() { return shearRate_s_; }
+  /// [particle] of the last step: what the next one's viscosities follow from.
+  struct ShearRates {
+    std::vector<double> own_s,
+        wall_s;  ///< 1/s; at the particle, half way to its wall; NAN: unknown
+    void forget(std::size_t particles);
+  };
+  ShearRates& shearRates() { return shearRates_; }
 
  private:
   void assemble(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
@@ -43,18 +54,23 @@ class Viscosity {
                           double support_m) const;
   Report solve(const Flow& flow);
 
-  std::vector<double> shearRate_s_;             // [particle] NaN where not yet known
-  std::vector<double> wallDrag_;                // [particle]
-  std::vector<double> viscosity_, force_;       // [slot]; [slot][3]
+  void findRates(const Flow& flow, const std::vector<Vec3>& velocities);
+
+  ShearRates shearRates_;
+  std::vector<double> wallDrag_;                           // [particle]
+  std::vector<double> viscosity_, wallViscosity_, force_;  // [slot]; [slot]; [slot][3]
+  std::vector<double> inertia_;                 // [slot] share of the kernel inside the walls
   std::vector<float> mu_;                       // [slot + 1]
   Tensors evenness_;                            // [slot + 1]
   std::vector<Vec3> right_;                     // [slot] right side
-  std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] 1 + wall drag; 1 / diagonal
+  std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] inertia and drag; 1 / diagonal
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
 
 /// dv_a / dx_b (1/s) at a slot that moves with `velocity`, walls included.
 Mat3 velocityGradient_s(const Flow& flow, const SlopeSweep& slopes, const Vec3& velocity, int slot);
+/// The same half way to the wall: along its normal the velocity changes as from here to it.
+Mat3 gradientBeforeWall_s(const WallSample& wall, const Vec3& velocity, const Mat3& gradient_s);
 /// sqrt(2 D:D) (1/s) of it.
 double shearRate_s(const Mat3& velocityGradient_s);
 }  // namespace swallowclip::bolus
