@@ -112,7 +112,7 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
       const int p = f.particle(i);
       const WallSample& w = f.walls[p];
       const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
-      inertia_[i] = 1 - std::min(w.lambda, kMostLambda);
+      inertia_[i] = w.friction > 0 ? 1 - std::min(w.lambda, kMostLambda) : 1;
       const double shear = wallViscosity_[i] * kWallFactor * w.friction / inertia_[i];
       wallDrag_[p] = dt / density * std::max(shear, viscosity_[i] * slit);
       own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));

@@ -7,7 +7,8 @@
 // give 2 tau(d) |grad lambda| + (1 - lambda - d |grad lambda|) tau', the wall takes 2 |grad lambda|
 // times the stress half way to it, tau(d) - tau' d / 2; so nu_wall is that of the shear rate there.
 // On the left, as a share of the particle's inertia, 1 - lambda (the gamma by which Ferrand et al.
-// 2013 divide) leaves the system symmetric.
+// 2013 divide) leaves the system symmetric. Walls that let slip have tau = tau' d and no friction:
+// there the right side is 1 - lambda + d |grad lambda|, which is one within a few percent.
 // On a cubic lattice it gives 1.01 of the viscosity; the form that also keeps angular momentum
 // (Monaghan 2005: 10 v.x / r^2 gradW) gives 0.71 of it with so few neighbours.
 #pragma once
@@ -40,8 +41,8 @@ class Viscosity {
 
   /// [particle] of the last step: what the next one's viscosities follow from.
   struct ShearRates {
-    std::vector<double> own_s,
-        wall_s;  ///< 1/s; at the particle, half way to its wall; NAN: unknown
+    std::vector<double> own_s;   ///< 1/s, at the particle; NAN: not yet known
+    std::vector<double> wall_s;  ///< 1/s, half way to its wall
     void forget(std::size_t particles);
   };
   ShearRates& shearRates() { return shearRates_; }
@@ -53,16 +54,16 @@ class Viscosity {
   bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
                           double support_m) const;
   Report solve(const Flow& flow);
-
   void findRates(const Flow& flow, const std::vector<Vec3>& velocities);
 
   ShearRates shearRates_;
-  std::vector<double> wallDrag_;                           // [particle]
-  std::vector<double> viscosity_, wallViscosity_, force_;  // [slot]; [slot]; [slot][3]
-  std::vector<double> inertia_;                 // [slot] share of the kernel inside the walls
-  std::vector<float> mu_;                       // [slot + 1]
-  Tensors evenness_;                            // [slot + 1]
-  std::vector<Vec3> right_;                     // [slot] right side
+  std::vector<double> wallDrag_;                   // [particle]
+  std::vector<double> viscosity_, wallViscosity_;  // [slot]
+  std::vector<double> force_;                      // [slot][3]
+  std::vector<double> inertia_;                    // [slot], see above
+  std::vector<float> mu_;                          // [slot + 1]
+  Tensors evenness_;                               // [slot + 1]
+  std::vector<Vec3> right_;                        // [slot] right side
   std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] inertia and drag; 1 / diagonal
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
