@@ -150,10 +150,11 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   // only the rest: 6 % too little in a 10 mm wide column of 1 Pa.s at steps of 1 ms, half or less
   // in a squeezed gap with 12 nu dt / h^2 = 1.
   projection.pushByLastPressure(flow, dt_s, v);
-  report.viscosityIterations = viscosity
-                                   .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas},
-                                          dt_s, kernel.support_m(), v)
-                                   .iterations;
+  report.viscosityIterations =
+      viscosity
+          .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas, .slip = def.slip}, dt_s,
+                 kernel.support_m(), v)
+          .iterations;
   if (settlingViscosity_Pas == 0)
     projection.brake(flow, viscosity.wallDrag());
   else
@@ -200,7 +201,8 @@ void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
       def.fluid.density_kgm3 * wcsph.leastViscosity_m2s(kernel.support_m() / 2);
   report.viscosityIterations =
       viscosity
-          .apply(flow, def.fluid, {.leastPair_Pas = least_Pas, .explicitWhereStable = true}, dt_s,
+          .apply(flow, def.fluid,
+                 {.leastPair_Pas = least_Pas, .explicitWhereStable = true, .slip = def.slip}, dt_s,
                  kernel.support_m(), particles.velocities)
           .iterations;
 }

@@ -81,7 +81,7 @@ void Viscosity::evenOut(const WallSample& w, const float* moment, float* even) {
         scale * ((k < 3 ? 1 : 0) - kIsotropic * scale * (m[k] - (k < 3 ? third : 0))));
 }
 
-void Viscosity::assemble(const Flow& f, double density, double leastPair, double dt,
+void Viscosity::assemble(const Flow& f, double density, const Scheme& scheme, double dt,
                          double support) {
   const Neighbours& nb = f.neighbours;
   const int n = f.count();
@@ -99,7 +99,7 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
                                  mu_.data(),
                                  evenness_.of.data(),
                                  static_cast<float>(dt / density),  // 2, and half of two evennesses
-                                 static_cast<float>(leastPair),
+                                 static_cast<float>(scheme.leastPair_Pas),
                                  static_cast<float>(kSoftening * support * support / 4),
                                  static_cast<float>(kLeastPairShare),
                                  pair_.data(),
@@ -112,7 +112,7 @@ void Viscosity::assemble(const Flow& f, double density, double leastPair, double
       const int p = f.particle(i);
       const WallSample& w = f.walls[p];
       const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
-      inertia_[i] = w.friction > 0 ? 1 - std::min(w.lambda, kMostLambda) : 1;
+      inertia_[i] = scheme.slip ? 1 : 1 - std::min(w.lambda, kMostLambda);
       const double shear = wallViscosity_[i] * kWallFactor * w.friction / inertia_[i];
       wallDrag_[p] = dt / density * std::max(shear, viscosity_[i] * slit);
       own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));
@@ -242,7 +242,7 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
     wallViscosity_[i] =
         constant ? constant_Pas : apparentViscosity_Pas(fluid, shearRates_.wall_s[p]);
   }
-  assemble(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
+  assemble(f, fluid.density_kgm3, scheme, dt_s, support_m);
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);

@@ -31,6 +31,7 @@ class Viscosity {
     /// Forward Euler between particles where the step is short enough for it (thesis eq. 4.26);
     /// the walls' friction stays implicit, for it has no least distance.
     bool explicitWhereStable = false;
+    bool slip = false;  ///< walls have no friction
   };
   /// Viscosities of the moment from the strain rate, then one backward Euler step of `velocities`.
   Report apply(const Flow& flow, const Fluid& fluid, const Scheme& scheme, double dt_s,
@@ -48,7 +49,7 @@ class Viscosity {
   ShearRates& shearRates() { return shearRates_; }
 
  private:
-  void assemble(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
+  void assemble(const Flow& flow, double density_kgm3, const Scheme& scheme, double dt_s,
                 double support_m);
   static void evenOut(const WallSample& wall, const float* moment, float* even);
   bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
