@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000004;  // "SWBC", layout 4
+constexpr std::uint64_t kMark = 0x53574243'00000005;  // "SWBC", layout 5
 
 class Writer {
  public:
@@ -90,7 +90,8 @@ void all(Archive& a, Impl& s) {
   a(s.wallsBefore);
   a(s.fastestWall_ms);
   a(s.lastStep_s);
-  a(s.viscosity.shearRates_s());
+  a(s.viscosity.shearRates().own_s);
+  a(s.viscosity.shearRates().wall_s);
   a(s.viscosity.drags_ms2());
   a(s.wallTriangles);
   a(s.caps);

@@ -152,10 +152,11 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   // only the rest: 6 % too little in a 10 mm wide column of 1 Pa.s at steps of 1 ms, half or less
   // in a squeezed gap with 12 nu dt / h^2 = 1.
   projection.pushByLastPressure(flow, dt_s, v);
-  report.viscosityIterations = viscosity
-                                   .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas},
-                                          dt_s, kernel.support_m(), v)
-                                   .iterations;
+  report.viscosityIterations =
+      viscosity
+          .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas, .slip = def.slip}, dt_s,
+                 kernel.support_m(), v)
+          .iterations;
   if (settlingViscosity_Pas == 0)
     projection.brake(flow, viscosity.wallDrag());
   else
@@ -175,8 +176,8 @@ void Solver::Impl::project(double dt_s, Substep& report) {
 // A step that speeds a particle up beyond the reach of its contacts is taken again, half as long.
 double Solver::Impl::projectInReach(double dt_s, Substep& report) {
   const std::vector<Vec3> before = particles.velocities;
-  const std::vector<double> rate = projection.rateWarm(), density = projection.densityWarm(),
-                            shear = viscosity.shearRates_s();
+  const std::vector<double> rate = projection.rateWarm(), density = projection.densityWarm();
+  const Viscosity::ShearRates shear = viscosity.shearRates();
   for (const double least_s = kShortestRetry * dt_s;; dt_s /= 2) {
     project(dt_s, report);
     const auto outrun = [&](const Vec3& v) { return outruns(dt_s, v); };
@@ -187,7 +188,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
     particles.velocities = before;
     projection.rateWarm() = rate;
     projection.densityWarm() = density;
-    viscosity.shearRates_s() = shear;
+    viscosity.shearRates() = shear;
   }
 }
 
@@ -202,7 +203,8 @@ void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
       def.fluid.density_kgm3 * wcsph.leastViscosity_m2s(kernel.support_m() / 2);
   report.viscosityIterations =
       viscosity
-          .apply(flow, def.fluid, {.leastPair_Pas = least_Pas, .explicitWhereStable = true}, dt_s,
+          .apply(flow, def.fluid,
+                 {.leastPair_Pas = least_Pas, .explicitWhereStable = true, .slip = def.slip}, dt_s,
                  kernel.support_m(), particles.velocities)
           .iterations;
 }

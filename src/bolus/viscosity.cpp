@@ -25,6 +25,8 @@ constexpr double kExplicitShare = 0.0625;
 // Where neighbours exchange no more than this share of their velocities in a step, one sweep leaves
 // its square of them, as little as kTolerance: thin fluids need no solve.
 constexpr float kLittleExchange = 0.01f;
+// Share of the kernel beyond walls, counted at most, assumed (0.4 to 0.6): an edge has 0.4.
+constexpr double kMostLambda = 0.5;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
 
@@ -50,6 +52,12 @@ Mat3 velocityGradient_s(const Flow& f, const SlopeSweep& slopes, const Vec3& v, 
   // What the same sums make of a linear field (Bonet & Lok 1999, sec. 3.3): among disordered
   // particles 10 % off, which a stiff plug would take for shear.
   return moment.determinant() > kLeastMoment ? Mat3(gradient * moment.inverse()) : gradient;
+}
+Mat3 gradientBeforeWall_s(const WallSample& w, const Vec3& v, const Mat3& gradient) {
+  const double steep = w.gradLambda.norm();
+  if (!(w.friction > 0 && w.area > 0 && steep > 0)) return gradient;
+  const Vec3 n = w.gradLambda / steep;
+  return gradient + ((w.frictionVelocity - w.friction * v) / w.area - gradient * n) * n.transpose();
 }
 double shearRate_s(const Mat3& gradient) {
   const Mat3 d = 0.5 * (gradient + gradient.transpose());
@@ -77,10 +85,10 @@ void Viscosity::evenOut(const WallSample& w, const float* moment, float* even) {
 }
 
 // All that a slot has to itself.
-void Viscosity::prepare(const Flow& f, const Fluid& fluid, double constant_Pas, double dt,
-                        const std::vector<Vec3>& v) {
+void Viscosity::prepare(const Flow& f, const Fluid& fluid, double constant_Pas, bool slip,
+                        double dt, const std::vector<Vec3>& v) {
   const int n = f.count();
-  viscosity_.resize(n);
+  for (auto* a : {&viscosity_, &inertia_}) a->resize(n);
   force_.resize(3 * n);
   right_.resize(n);
   inverse_.resize(n);
@@ -90,23 +98,30 @@ void Viscosity::prepare(const Flow& f, const Fluid& fluid, double constant_Pas, 
   }
   evenness_.shape(n, 1);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
+  const auto viscosityAt = [&](double rate_s) {
+    return constant_Pas > 0 ? constant_Pas : apparentViscosity_Pas(fluid, rate_s);
+  };
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
       const WallSample& w = f.walls[p];
-      viscosity_[i] =
-          constant_Pas > 0 ? constant_Pas : apparentViscosity_Pas(fluid, shearRate_s_[p]);
+      viscosity_[i] = viscosityAt(shearRates_.own_s[p]);
       mu_[i] = static_cast<float>(viscosity_[i]);
       evenOut(w, f.neighbours.moment[i], evenness_[i]);
-      // Across a slit with no room for a second particle the profile is not resolved: there the
-      // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
-      const double slit = w.friction > 0 ? 12 / (w.gap_m * w.gap_m) : 0;
-      wallDrag_[p] =
-          dt * viscosity_[i] / fluid.density_kgm3 * std::max(kWallFactor * w.friction, slit);
-      own_[i] = static_cast<float>(1 + wallDrag_[p]);
-      right_[i] =
-          w.friction > 0 ? Vec3(v[p] + wallDrag_[p] / w.friction * w.frictionVelocity) : v[p];
+      inertia_[i] = slip ? 1 : 1 - std::min(w.lambda, kMostLambda);
+      right_[i] = v[p];
+      if (w.friction > 0) {
+        // Across a slit with no room for a second particle the profile is not resolved: there the
+        // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
+        const double slit = viscosity_[i] * 12 / (w.gap_m * w.gap_m);
+        const double shear =
+            viscosityAt(shearRates_.wall_s[p]) * kWallFactor * w.friction / inertia_[i];
+        wallDrag_[p] = dt / fluid.density_kgm3 * std::max(shear, slit);
+        right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
+      }
+      own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));
       v_.set(i, right_[i] / (1 + wallDrag_[p]));
+      right_[i] *= inertia_[i];
     }
   });
 }
@@ -120,7 +135,7 @@ void Viscosity::weighPairs(const Flow& f, double density, double leastPair, doub
                                  mu_.data(),
                                  evenness_.of.data(),
                                  static_cast<float>(dt / density),  // 2, and half of two evennesses
-                                 static_cast<float>(leastPair),
+                                 static_cast<float>(scheme.leastPair_Pas),
                                  static_cast<float>(kSoftening * support * support / 4),
                                  static_cast<float>(kLeastPairShare),
                                  pair_.data(),
@@ -222,17 +237,40 @@ bool Viscosity::isStableExplicitly(const Scheme& scheme, double density, double 
   return dt * most / density <= kExplicitShare * support * support / 4;
 }
 
+void Viscosity::ShearRates::forget(std::size_t particles) {
+  own_s.assign(particles, NAN);
+  wall_s.assign(particles, NAN);
+}
+
+// Those that are not known yet.
+void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
+  v_.shape(f.count(), 1);
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) v_.set(i, v[f.particle(i)]);
+  });
+  const SlopeSweep slopes{f.lists(), v_.data()};
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const int p = f.particle(i);
+      if (!std::isnan(shearRates_.own_s[p])) continue;
+      const Mat3 gradient = velocityGradient_s(f, slopes, v[p], i);
+      shearRates_.own_s[p] = shearRate_s(gradient);
+      shearRates_.wall_s[p] = shearRate_s(gradientBeforeWall_s(f.walls[p], v[p], gradient));
+    }
+  });
+}
+
 Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Scheme& scheme,
                                    double dt_s, double support_m, std::vector<Vec3>& v) {
   wallDrag_.assign(v.size(), 0.0);
-  shearRate_s_.resize(v.size(), NAN);
+  if (shearRates_.own_s.size() != v.size()) shearRates_.forget(v.size());
   drag_ms2_.resize(v.size(), Vec3::Zero());
   const bool constant = scheme.override_Pas > 0 || fluid.model == RheologyModel::newtonian;
   const double constant_Pas = scheme.override_Pas > 0 ? scheme.override_Pas
                               : constant              ? fluid.viscosity_Pas
                                                       : 0;
   if (!constant) findRates(f, v);
-  prepare(f, fluid, constant_Pas, dt_s, v);
+  prepare(f, fluid, constant_Pas, scheme.slip, dt_s, v);
   weighPairs(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
   Report report;
   if (mostExchanged_ >= kLittleExchange &&
@@ -245,29 +283,16 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
     drag.run(begin, end);
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      const Vec3 next = (right_[i] - Vec3(&force_[3 * i])) / (1 + wallDrag_[p]);
+      const Vec3 next =
+          (right_[i] - Vec3(&force_[3 * i])) / (inertia_[i] * (1 + wallDrag_[p]));
       drag_ms2_[p] = (next - v[p]) / dt_s;
       v[p] = next;
     }
   });
   // The next step's viscosities follow from this field, before pressure has its say: what it does
   // to single particles is noise, which would thin a fluid that ought to be stiff.
-  shearRate_s_.assign(v.size(), NAN);
+  shearRates_.forget(v.size());
   if (!constant) findRates(f, v);
   return report;
-}
-
-// Of those that are not known yet.
-void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
-  v_.shape(f.count(), 1);
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) v_.set(i, v[f.particle(i)]);
-  });
-  const SlopeSweep slopes{f.lists(), v_.data()};
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i)
-      if (double& rate = shearRate_s_[f.particle(i)]; std::isnan(rate))
-        rate = shearRate_s(velocityGradient_s(f, slopes, v[f.particle(i)], i));
-  });
 }
 }  // namespace swallowclip::bolus

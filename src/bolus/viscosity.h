@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Implicit viscosity for every fluid, thin or thick: the pairwise Laplacian of Morris, Fox & Zhu
 // (1997, eq. 22), with the walls' no-slip friction inside the same matrix-free conjugate gradients:
-//   a_i = 2 sum nu_ij V v_ij (x_ij . gradW_ij) / (r^2 + eta^2) - 2 nu_i friction (v_i - v_wall)
+//   (1 - lambda_i) a_i = 2 sum nu_ij V v_ij (x_ij . gradW_ij) / (r^2 + eta^2)
+//                        - 2 nu_wall friction (v_i - v_wall)
+// Where stress grows linearly from a wall, the right side is 1 - lambda times its gradient: pairs
+// give 2 tau(d) |grad lambda| + (1 - lambda - d |grad lambda|) tau', the wall takes 2 |grad lambda|
+// times the stress half way to it, tau(d) - tau' d / 2; so nu_wall is that of the shear rate there.
+// On the left, as a share of the particle's inertia, 1 - lambda (the gamma by which Ferrand et al.
+// 2013 divide) leaves the system symmetric. Walls that let slip have tau = tau' d and no friction:
+// there the right side is 1 - lambda + d |grad lambda|, which is one within a few percent.
 // On a cubic lattice it gives 1.01 of the viscosity; the form that also keeps angular momentum
 // (Monaghan 2005: 10 v.x / r^2 gradW) gives 0.71 of it with so few neighbours.
 #pragma once
@@ -24,6 +31,7 @@ class Viscosity {
     /// Forward Euler between particles where the step is short enough for it (thesis eq. 4.26);
     /// the walls' friction stays implicit, for it has no least distance.
     bool explicitWhereStable = false;
+    bool slip = false;  ///< walls have no friction
   };
   /// Viscosities of the moment from the strain rate, then one backward Euler step of `velocities`.
   Report apply(const Flow& flow, const Fluid& fluid, const Scheme& scheme, double dt_s,
@@ -35,14 +43,19 @@ class Viscosity {
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
   const std::vector<double>& wallDrag() const { return wallDrag_; }
 
-  /// [particle] of the last step, 1/s: what the next one's viscosities follow from.
-  std::vector<double>& shearRates_s() { return shearRate_s_; }
+  /// [particle] of the last step: what the next one's viscosities follow from.
+  struct ShearRates {
+    std::vector<double> own_s;   ///< 1/s, at the particle; NAN: not yet known
+    std::vector<double> wall_s;  ///< 1/s, half way to its wall
+    void forget(std::size_t particles);
+  };
+  ShearRates& shearRates() { return shearRates_; }
 
   /// [particle] acceleration by the last step's viscosity: where the next solve starts from.
   std::vector<Vec3>& drags_ms2() { return drag_ms2_; }
 
  private:
-  void prepare(const Flow& flow, const Fluid& fluid, double constant_Pas, double dt_s,
+  void prepare(const Flow& flow, const Fluid& fluid, double constant_Pas, bool slip, double dt_s,
                const std::vector<Vec3>& velocities);
   void weighPairs(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
                   double support_m);
@@ -52,14 +65,15 @@ class Viscosity {
                           double support_m) const;
   Report solve(const Flow& flow, double dt_s, const std::vector<Vec3>& velocities);
 
-  std::vector<double> shearRate_s_;             // [particle] NaN where not yet known
+  ShearRates shearRates_;
   std::vector<Vec3> drag_ms2_;                  // [particle]
   std::vector<double> wallDrag_;                // [particle]
   std::vector<double> viscosity_, force_;       // [slot]; [slot][3]
+  std::vector<double> inertia_;                 // [slot], see above
   std::vector<float> mu_;                       // [slot + 1]
   Tensors evenness_;                            // [slot + 1]
   std::vector<Vec3> right_;                     // [slot] right side
-  std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] 1 + wall drag; [slot] sum of
+  std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] inertia and drag; [slot] sum of
                                                 // the pairs' weights, then 1 / diagonal
   float mostExchanged_ = 0;                     // the largest sum of a slot's weights
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
@@ -67,6 +81,8 @@ class Viscosity {
 
 /// dv_a / dx_b (1/s) at a slot that moves with `velocity`, walls included.
 Mat3 velocityGradient_s(const Flow& flow, const SlopeSweep& slopes, const Vec3& velocity, int slot);
+/// The same half way to the wall: along its normal the velocity changes as from here to it.
+Mat3 gradientBeforeWall_s(const WallSample& wall, const Vec3& velocity, const Mat3& gradient_s);
 /// sqrt(2 D:D) (1/s) of it.
 double shearRate_s(const Mat3& velocityGradient_s);
 }  // namespace swallowclip::bolus
