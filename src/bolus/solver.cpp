@@ -19,7 +19,7 @@ constexpr double kSettlingViscosity_Pas = 0.5;  // assumed (0.1 to 1)
 constexpr double kDriftWindow_s = 0.05;  // assumed (0.02 to 0.1)
 // Fastest particle and mean over a window, in spacings per second, assumed (1 to 3, 0.2 to 0.5). A
 // column of 1 Pa.s that still sinks by 5 and 1 has 2.8 % too much pressure at its floor; then 0.8.
-constexpr double kRestDrift = 1.5, kRestMeanDrift = 0.35;
+constexpr double kRestDrift = 1.5, kRestMeanDrift = 0.4;
 constexpr double kInfeasibleError = 0.02;  // mean compression, DESIGN 5
 // Nor may it squirt more than this share of the bolus out through slits in that time, assumed
 // (3 to 10 %).

@@ -135,7 +135,7 @@ void Viscosity::weighPairs(const Flow& f, double density, double leastPair, doub
                                  mu_.data(),
                                  evenness_.of.data(),
                                  static_cast<float>(dt / density),  // 2, and half of two evennesses
-                                 static_cast<float>(scheme.leastPair_Pas),
+                                 static_cast<float>(leastPair),
                                  static_cast<float>(kSoftening * support * support / 4),
                                  static_cast<float>(kLeastPairShare),
                                  pair_.data(),
@@ -151,8 +151,8 @@ void Viscosity::weighPairs(const Flow& f, double density, double leastPair, doub
 // Conjugate gradients, preconditioned by the diagonal, all three components at once.
 Viscosity::Report Viscosity::solve(const Flow& f, double dt_s, const std::vector<Vec3>& v) {
   const int n = f.count();
-  const auto sweep = [&](const Floats3& v) {
-    return ViscositySweep{f.lists(), pair_.data(), own_.data(), v.data(), product_.data()};
+  const auto sweep = [&](const Floats3& of) {
+    return ViscositySweep{f.lists(), pair_.data(), own_.data(), of.data(), product_.data()};
   };
   struct Sums {
     double right2 = 0, rz = 0, rr = 0;
