@@ -11,13 +11,14 @@ namespace {
 constexpr int kWallChunk = 16;  // particles per work item of wall work
 constexpr int kDensityChunk = 512;
 constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
-constexpr double kClearMargin = 0.1;  // spacings, assumed (0.05 to 0.2): rounding, walls that speed up
-// Along a wall that is nearly flat as far as the kernel sees (the integral of its normal is nearly as
-// long as its area) farther moves change as little: half the curvature |grad lambda| / R times the
-// move squared, 2e-4 at 12 spacings' radius. Spacings and cosine, assumed (0.05 to 0.15, 0.97 to
-// 0.99).
+constexpr double kClearMargin =
+    0.1;  // spacings, assumed (0.05 to 0.2): rounding, walls that speed up
+// Along a wall that is nearly flat as far as the kernel sees (the integral of its normal is nearly
+// as long as its area) farther moves change as little: half the curvature |grad lambda| / R times
+// the move squared, 2e-4 at 12 spacings' radius. Spacings and cosine, assumed (0.05 to 0.15, 0.97
+// to 0.99).
 constexpr double kMoveAlong = 0.07, kFlat = 0.98;
-constexpr double kFilmGap = 0.3;    // spacings, DESIGN 5 (0.6 invents residue)
+constexpr double kFilmGap = 0.3;  // spacings, DESIGN 5 (0.6 invents residue)
 // The same in a fold or cusp, where no contact faces the nearest: a slit of that width leaves a
 // fifth of the kernel. At most 1 where sheets do not cross.
 constexpr double kFilmLambda = 0.8;
@@ -130,8 +131,8 @@ void Solver::Impl::updateStates() {
     if (!isGone(s)) {
       const bool wasFilm = s == State::film;
       const bool betweenCrossed = !contacts[i].empty() && contacts[i][0].distance_m < 0;
-      s = betweenCrossed || gap_m[i] < kFilmGap * def.spacing_m ||
-                  walls[i].lambda > kFilmLambda || staysFilm(i)
+      s = betweenCrossed || gap_m[i] < kFilmGap * def.spacing_m || walls[i].lambda > kFilmLambda ||
+                  staysFilm(i)
               ? State::film
               : State::fluid;
       if (wasFilm && s == State::fluid) takenUp.push_back(static_cast<int>(i));

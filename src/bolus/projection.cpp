@@ -121,8 +121,7 @@ void Projection::findSource(const Flow& f, const std::vector<Vec3>& v,
   double mean = 0;
   for (int i = 0; i < f.count(); ++i) mean += source_[i] / f.count();
   asked_.assign(1, {});
-  for (int i = 0; i < f.count(); ++i)
-    asked_[0].add(source_[i] -= static_cast<float>(mean), true);
+  for (int i = 0; i < f.count(); ++i) asked_[0].add(source_[i] -= static_cast<float>(mean), true);
 }
 
 // (-D a(k)) = source,  k >= 0.  source_ in 1/s^2.
@@ -211,8 +210,7 @@ void Projection::pushByLastPressure(const Flow& f, double dt_s, std::vector<Vec3
   for (int i = 0; i < f.count(); ++i) x_[i] = static_cast<float>(rateK_[f.particle(i)]);
   f.sweep([&](int begin, int end, int) {
     findAccelerations(pressure, begin, end);
-    for (int i = begin; i < end; ++i)
-      v[f.particle(i)] += dt_s * acceleration_.at(i).cast<double>();
+    for (int i = begin; i < end; ++i) v[f.particle(i)] += dt_s * acceleration_.at(i).cast<double>();
   });
 }
 

@@ -61,8 +61,8 @@ void Shifting::carry(const Flow& f, double dt_s, const std::vector<Vec3>& moving
   f.sweep([&](int begin, int end, int chunk) {
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      // before a wall density pushes layers to and fro, and the start of plane Poiseuille flow comes
-      // out 6 % slow when that is taken for a way gone
+      // before a wall density pushes layers to and fro, and the start of plane Poiseuille flow
+      // comes out 6 % slow when that is taken for a way gone
       const Vec3 way_ms = f.walls[p].lambda > 0 ? shift_[i] : Vec3(moving[p] - v[p]);
       carried_[i] = dt_s * (slope_[i] * way_ms);
       parts[chunk] += carried_[i];

@@ -283,8 +283,7 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
     drag.run(begin, end);
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      const Vec3 next =
-          (right_[i] - Vec3(&force_[3 * i])) / (inertia_[i] * (1 + wallDrag_[p]));
+      const Vec3 next = (right_[i] - Vec3(&force_[3 * i])) / (inertia_[i] * (1 + wallDrag_[p]));
       drag_ms2_[p] = (next - v[p]) / dt_s;
       v[p] = next;
     }

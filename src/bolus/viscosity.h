@@ -66,16 +66,16 @@ class Viscosity {
   Report solve(const Flow& flow, double dt_s, const std::vector<Vec3>& velocities);
 
   ShearRates shearRates_;
-  std::vector<Vec3> drag_ms2_;                  // [particle]
-  std::vector<double> wallDrag_;                // [particle]
-  std::vector<double> viscosity_, force_;       // [slot]; [slot][3]
-  std::vector<double> inertia_;                 // [slot], see above
-  std::vector<float> mu_;                       // [slot + 1]
-  Tensors evenness_;                            // [slot + 1]
-  std::vector<Vec3> right_;                     // [slot] right side
-  std::vector<float> pair_, own_, inverse_;     // [pair]; [slot + 1] inertia and drag; [slot] sum of
-                                                // the pairs' weights, then 1 / diagonal
-  float mostExchanged_ = 0;                     // the largest sum of a slot's weights
+  std::vector<Vec3> drag_ms2_;               // [particle]
+  std::vector<double> wallDrag_;             // [particle]
+  std::vector<double> viscosity_, force_;    // [slot]; [slot][3]
+  std::vector<double> inertia_;              // [slot], see above
+  std::vector<float> mu_;                    // [slot + 1]
+  Tensors evenness_;                         // [slot + 1]
+  std::vector<Vec3> right_;                  // [slot] right side
+  std::vector<float> pair_, own_, inverse_;  // [pair]; [slot + 1] inertia and drag; [slot] sum of
+                                             // the pairs' weights, then 1 / diagonal
+  float mostExchanged_ = 0;                  // the largest sum of a slot's weights
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
 

@@ -44,8 +44,8 @@ struct Rule {
 };
 constexpr Rule kRules[] = {{kRule1, 1}, {kRule3, 3}, {kRule7, 7}};
 // From this many radii (and a spacing, but for seven points) on the solid angle is left to the
-// quadrature as well, and beyond the kernel anyway: what remains of G is smoother than F. Within 0.1 % of lambda
-// (wall_field_test).
+// quadrature as well, and beyond the kernel anyway: what remains of G is smoother than F. Within
+// 0.1 % of lambda (wall_field_test).
 constexpr float kFarRadii[] = {2.5f, 2.5f, 1.8f};
 constexpr float kFarSpacings[] = {1, 1, 0};
 // Beyond this many supports the kernel is small on all of a piece, and three points do for seven:
@@ -237,8 +237,8 @@ void WallQuadrature::look(float x, float y, float z, int begin, int end, NearPie
                           WallSums& sums) const {
   for (auto* list : {&near.all, &near.rules})
     list->resize(std::max<std::size_t>(list->size(), end - begin + kLanes));
-  const int found =
-      lookThrough(*pieces, x, y, z, begin, end, support_m, near.all.data(), near.rules.data(), sums);
+  const int found = lookThrough(*pieces, x, y, z, begin, end, support_m, near.all.data(),
+                                near.rules.data(), sums);
   for (auto& list : near.of)
     list.resize(std::max<std::size_t>(list.size(), near.total + found + kLanes));
   near.total += found;

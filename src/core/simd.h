@@ -113,7 +113,8 @@ SC_INLINE F8 root(F8 a) {
 }
 /// Always in this order: ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
 SC_INLINE float sum(F8 a) {
-  const F4 fours = __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
+  const F4 fours =
+      __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
   const F4 twos = fours + __builtin_shufflevector(fours, fours, 2, 3, 2, 3);
   return twos[0] + twos[1];
 }
@@ -123,11 +124,14 @@ SC_INLINE F4 sum3(F8 x, F8 y, F8 z) {
     return __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
   };
   const F4 a = halves(x), b = halves(y), c = halves(z), none{};
-  const F4 ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab2 = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const F4 ab = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+           ab2 = __builtin_shufflevector(a, b, 2, 6, 3, 7);
   const F4 cd = __builtin_shufflevector(c, none, 0, 4, 1, 5),
            cd2 = __builtin_shufflevector(c, none, 2, 6, 3, 7);
-  const F4 first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5);
-  return first + (__builtin_shufflevector(ab, cd, 2, 3, 6, 7) + __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7));
+  const F4 first =
+      __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5);
+  return first + (__builtin_shufflevector(ab, cd, 2, 3, 6, 7) +
+                  __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7));
 }
 SC_INLINE F4 load4(const float* p) {
   F4 v;
