@@ -12,12 +12,7 @@ constexpr int kWallChunk = 16;  // particles per work item of wall work
 constexpr int kDensityChunk = 512;
 constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
 constexpr double kClearMargin =
-    0.1;  // spacings, assumed (0.05 to 0.2): rounding, walls that speed up
-// Along a wall that is nearly flat as far as the kernel sees (the integral of its normal is nearly
-// as long as its area) farther moves change as little: half the curvature |grad lambda| / R times
-// the move squared, 2e-4 at 12 spacings' radius. Spacings and cosine, assumed (0.05 to 0.15, 0.97
-// to 0.99).
-constexpr double kMoveAlong = 0.07, kFlat = 0.98;
+    0.1;                          // spacings, assumed (0.05 to 0.2): rounding, walls that speed up
 constexpr double kFilmGap = 0.3;  // spacings, DESIGN 5 (0.6 invents residue)
 // The same in a fold or cusp, where no contact faces the nearest: a slit of that width leaves a
 // fifth of the kernel. At most 1 where sheets do not cross.
@@ -201,16 +196,6 @@ double Solver::Impl::movedSinceHeld_m(int i) const {
          (time_s - h.time_s) * std::max(fastestWall_ms, h.fastestWall_ms);
 }
 
-bool Solver::Impl::movedLittle(int i) const {
-  const double all_m = movedSinceHeld_m(i), little_m = kHeldMove * def.spacing_m;
-  if (all_m < little_m) return true;
-  const WallSample& w = held[i].sample;
-  const double steep = w.gradLambda.norm();
-  if (!(all_m < kMoveAlong * def.spacing_m) || steep == 0 || steep < kFlat * w.area) return false;
-  const Vec3 moved = particles.positions[i] - held[i].place;
-  return all_m - moved.norm() + std::abs(moved.dot(w.gradLambda)) / steep < little_m;
-}
-
 // Where the walls' integrals saw no wall near there are no contacts to look for.
 bool Solver::Impl::isClear(int i) {
   const double reach_m = (kContactReach + kClearMargin) * def.spacing_m;
@@ -223,12 +208,9 @@ bool Solver::Impl::isClear(int i) {
 // Before walls that stand still a small move changes distances, but no wall points worth looking
 // for.
 bool Solver::Impl::followContacts(int i) {
-  if (fastestWall_ms > 0 || !wallsStood) return false;
-  const Vec3 moved = particles.positions[i] - contactsAt[i];
-  const bool alone = contacts[i].size() == 1;  // across a wall that is flat around here, or anyhow
-  const double across_m = alone ? std::abs(moved.dot(contacts[i][0].inward)) : moved.norm();
-  const double most_m = (alone ? kMoveAlong : kHeldMove) * def.spacing_m;
-  if (!(across_m < kHeldMove * def.spacing_m && moved.squaredNorm() < most_m * most_m))
+  const double most_m = kHeldMove * def.spacing_m;
+  if (fastestWall_ms > 0 || !wallsStood ||
+      (particles.positions[i] - contactsAt[i]).squaredNorm() > most_m * most_m)
     return false;
   for (Contact& c : contacts[i]) {
     c.distance_m = (particles.positions[i] - c.point).dot(c.inward);
@@ -249,7 +231,7 @@ bool Solver::Impl::followWalls(int i) {
   Held& h = held[i];
   const Vec3 moved = particles.positions[i] - h.place;
   const double since_s = time_s - h.time_s;
-  if (movedLittle(i)) {
+  if (movedSinceHeld_m(i) < kHeldMove * def.spacing_m) {
     walls[i] = h.sample;
     walls[i].lambda =
         std::max(0.0, h.sample.lambda + moved.dot(h.sample.gradLambda) - since_s * h.sample.flux_s);

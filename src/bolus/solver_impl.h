@@ -59,7 +59,6 @@ struct Solver::Impl {
   void sampleWallsOf(int i);
   bool followWalls(int i);
   double movedSinceHeld_m(int i) const;
-  bool movedLittle(int i) const;
   bool isClear(int i);
   bool findContacts(int i);  ///< true when the particle was outside
   bool followContacts(int i);
