@@ -21,7 +21,7 @@ constexpr double kLeastShare = 1.0 / 16;            // of the step otherwise cho
 // particles per volume: measured in columns at rest, which else stand 1.5 % too tall. A room that
 // is full feels only differences, and an equation of state has its own compression.
 constexpr double kRelaxedSum = 1.015;
-constexpr double kShortestRetry = 1.0 / 16;  // of a step that is taken again, assumed (1/64 to 1/4)
+constexpr double kShortestRetry = 1.0 / 64;  // of a step that is taken again, assumed (1/64 to 1/4)
 // What a closing slit would shoot out faster than this stays there as film: in a slit narrower than
 // that share of a spacing a particle alone finds no way out at any speed, and no bolus is seen to
 // move half as fast. Both assumed (2 to 3 m/s, 0.6 to 0.8 spacings).
