@@ -249,13 +249,22 @@ void Solver::Impl::updatePath(bool all) {
   const WallMotion& m = *motion;
   if (m.s_m.empty() && m.branch.empty()) return;
   const double nearEnd = def.swallowedAt_s_m - kNearEnd_m;
+  const auto isFar = [&](std::size_t i) {  // from all walls, and has to know its s
+    return !isGone(particles.state[i]) && contacts[i].empty() && walls[i].nearestTriangle < 0 &&
+           (all || particles.s_m[i] >= nearEnd);
+  };
+  for (std::size_t i = 0; i < active.size(); ++i)
+    if (isFar(i)) {
+      runs.build(wallPositions, m.triangles);
+      break;
+    }
   pool.forChunks(static_cast<int>(active.size()), kWallChunk, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       if (isGone(particles.state[i])) continue;
       int k = contacts[i].empty() ? walls[i].nearestTriangle : contacts[i][0].triangle;
       const Vec3& p = particles.positions[i];
       if (k < 0 && !all && particles.s_m[i] < nearEnd) continue;
-      if (k < 0) k = nearestPoint(p, wallPositions, m.triangles, lastNearest[i]).triangle;
+      if (k < 0) k = runs.nearest(p, wallPositions, m.triangles, lastNearest[i]).triangle;
       if (k < static_cast<int>(m.triangles.size())) lastNearest[i] = k;
       const Triangle& t = wallTriangles[k];
       const Vec3 bary =

@@ -97,6 +97,7 @@ struct Solver::Impl {
   std::vector<Vec3> contactsAt, wallsBefore;   // places where contacts were last looked for; walls
   bool wallsStood = false;                     // since the last step
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
+  TriangleRuns runs;                           // of the skin as it is
   std::vector<int> lastNearest;                // [particle] triangle, only a guess
   std::vector<int> takenUp;                    // films that became fluid just now
   mutable std::vector<Neighbours::Near> nearFilm;

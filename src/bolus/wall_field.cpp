@@ -22,11 +22,15 @@ double cornerAngle(const Vec3& at, const Vec3& b, const Vec3& c) {
 }
 }  // namespace
 
-NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> x,
-                          std::span<const Triangle> triangles, int guess) {
+namespace {
+struct Search {
+  Vec3 p;
+  std::span<const Vec3> x;
+  std::span<const Triangle> triangles;
   NearestPoint best;
   double best2 = INFINITY;
-  const auto look = [&](int k) {
+
+  void look(int k) {
     const Triangle& t = triangles[k];
     const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
     // No point of abc is nearer than its corner a less the longer of its two edges there, and
@@ -39,10 +43,50 @@ NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> x,
     if (d2 > best2 || (d2 == best2 && k >= best.triangle)) return;
     best2 = d2;
     best = {k, bary, q, std::sqrt(d2)};
-  };
-  if (guess >= 0) look(guess);
-  for (int k = 0; k < static_cast<int>(triangles.size()); ++k) look(k);
-  return best;
+  }
+};
+}  // namespace
+
+NearestPoint nearestPoint(const Vec3& p, std::span<const Vec3> x,
+                          std::span<const Triangle> triangles, int guess) {
+  Search search{p, x, triangles, {}};
+  if (guess >= 0) search.look(guess);
+  for (int k = 0; k < static_cast<int>(triangles.size()); ++k) search.look(k);
+  return search.best;
+}
+
+void TriangleRuns::build(std::span<const Vec3> x, std::span<const Triangle> triangles) {
+  const int n = static_cast<int>(triangles.size());
+  spheres_.clear();
+  for (int first = 0; first < n; first += kRun) {
+    const auto run = triangles.subspan(first, std::min(kRun, n - first));
+    Vec3 low = Vec3::Constant(INFINITY), high = -low;
+    for (const Triangle& t : run)
+      for (const int v : t) {
+        low = low.cwiseMin(x[v]);
+        high = high.cwiseMax(x[v]);
+      }
+    Sphere s{(low + high) / 2, 0};
+    for (const Triangle& t : run)
+      for (const int v : t) s.radius_m = std::max(s.radius_m, (x[v] - s.centre).norm());
+    spheres_.push_back(s);
+  }
+}
+
+NearestPoint TriangleRuns::nearest(const Vec3& p, std::span<const Vec3> x,
+                                   std::span<const Triangle> triangles, int guess) const {
+  constexpr double kRounding = 1 + 1e-9;
+  Search search{p, x, triangles, {}};
+  if (guess >= 0) search.look(guess);
+  for (std::size_t r = 0; r < spheres_.size(); ++r) {
+    const Sphere& s = spheres_[r];
+    const double reach_m = (std::sqrt(search.best2) + s.radius_m) * kRounding;
+    if ((p - s.centre).squaredNorm() > reach_m * reach_m) continue;
+    const int first = static_cast<int>(r) * kRun;
+    const int end = std::min(first + kRun, static_cast<int>(triangles.size()));
+    for (int k = first; k < end; ++k) search.look(k);
+  }
+  return search.best;
 }
 
 WallField::WallField(const KernelTable& table, double spacing_m)
