@@ -11,8 +11,8 @@ namespace {
 constexpr int kWallChunk = 16;  // particles per work item of wall work
 constexpr int kDensityChunk = 512;
 constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
-constexpr double kClearMargin =
-    0.1;                          // spacings, assumed (0.05 to 0.2): rounding, walls that speed up
+// More than contacts reach, for rounding and walls that speed up; spacings, assumed (0.05 to 0.2).
+constexpr double kClearMargin = 0.1;
 constexpr double kFilmGap = 0.3;  // spacings, DESIGN 5 (0.6 invents residue)
 // The same in a fold or cusp, where no contact faces the nearest: a slit of that width leaves a
 // fifth of the kernel. At most 1 where sheets do not cross.

@@ -127,8 +127,8 @@ void Viscosity::prepare(const Flow& f, const Fluid& fluid, double constant_Pas, 
 }
 
 // Weights of pairs, and their sums in inverse_.
-void Viscosity::weighPairs(const Flow& f, double density, double leastPair, double dt,
-                           double support) {
+float Viscosity::weighPairs(const Flow& f, double density, double leastPair, double dt,
+                            double support) {
   pair_.resize(f.neighbours.index.size());
   const PairViscositySweep sweep{f.lists(),
                                  f.neighbours.r.data(),
@@ -145,7 +145,7 @@ void Viscosity::weighPairs(const Flow& f, double density, double leastPair, doub
     sweep.run(begin, end);
     for (int i = begin; i < end; ++i) most[chunk] = std::max(most[chunk], inverse_[i]);
   });
-  mostExchanged_ = most.empty() ? 0 : std::ranges::max(most);
+  return most.empty() ? 0 : std::ranges::max(most);
 }
 
 // Conjugate gradients, preconditioned by the diagonal, all three components at once.
@@ -271,9 +271,9 @@ Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Sche
                                                       : 0;
   if (!constant) findRates(f, v);
   prepare(f, fluid, constant_Pas, scheme.slip, dt_s, v);
-  weighPairs(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
+  const float exchanged = weighPairs(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
   Report report;
-  if (mostExchanged_ >= kLittleExchange &&
+  if (exchanged >= kLittleExchange &&
       !isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m))
     report = solve(f, dt_s, v);
   // The solution enters only through the antisymmetric pair terms, so that momentum is kept to

@@ -57,8 +57,9 @@ class Viscosity {
  private:
   void prepare(const Flow& flow, const Fluid& fluid, double constant_Pas, bool slip, double dt_s,
                const std::vector<Vec3>& velocities);
-  void weighPairs(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
-                  double support_m);
+  /// Largest sum of a slot's weights.
+  float weighPairs(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
+                   double support_m);
   void findRates(const Flow& flow, const std::vector<Vec3>& velocities);
   static void evenOut(const WallSample& wall, const float* moment, float* even);
   bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
@@ -75,7 +76,6 @@ class Viscosity {
   std::vector<Vec3> right_;                  // [slot] right side
   std::vector<float> pair_, own_, inverse_;  // [pair]; [slot + 1] inertia and drag; [slot] sum of
                                              // the pairs' weights, then 1 / diagonal
-  float mostExchanged_ = 0;                  // the largest sum of a slot's weights
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
 

@@ -85,6 +85,54 @@ TEST(WallField, LargeTrianglesAreCut) {
   b.build(fine.triangles, fine.positions, v, p, p);
   EXPECT_NEAR(a.sample(p).lambda, b.sample(p).lambda, 5e-3);
 }
+// Large triangles, whose far ones have fewer points, against sixteen times as many small ones.
+TEST(WallField, FewPointsFarAwayAreEnough) {
+  const double spacing = 1e-3;
+  const Vec3 high(0.012, 0.012, 0.012);
+  const testing::Mesh large = testing::box({0, 0, 0}, high, 1.3e-3);  // diagonals of 1.8 mm
+  const testing::Mesh small = testing::box({0, 0, 0}, high, 0.3e-3);
+  const KernelTable table{Kernel(KernelKind::cubicSpline, 2 * spacing)};
+  WallField a(table, spacing), b(table, spacing);
+  a.build(large.triangles, large.positions, std::vector<Vec3>(large.positions.size(), Vec3::Zero()),
+          Vec3::Zero(), high);
+  b.build(small.triangles, small.positions, std::vector<Vec3>(small.positions.size(), Vec3::Zero()),
+          Vec3::Zero(), high);
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 p = 1e-3 * Vec3(0.4 + 0.011 * (k * 37 % 200), 0.4 + 0.056 * (k * 73 % 200),
+                               0.4 + 0.056 * (k * 91 % 200));
+    const WallSample x = a.sample(p), y = b.sample(p);
+    EXPECT_NEAR(x.lambda, y.lambda, 1e-3) << p.transpose();
+    EXPECT_LT((x.gradLambda - y.gradLambda).norm() * spacing, 3e-3) << p.transpose();
+  }
+}
+TEST(WallField, NoWallIsNearerThanItSays) {
+  const testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 2e-3);
+  const KernelTable table{Kernel(KernelKind::cubicSpline, 4e-3)};
+  WallField field(table, 2e-3);
+  const std::vector<Vec3> v(mesh.positions.size(), Vec3::Zero());
+  field.build(mesh.triangles, mesh.positions, v, Vec3::Zero(), Vec3::Constant(0.02));
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 p = 1e-4 * Vec3(1 + k * 37 % 198, 1 + k * 73 % 198, 1 + k * 91 % 198);
+    const double away_m = nearestPoint(p, mesh.positions, mesh.triangles).distance_m;
+    const double clear_m = field.sample(p).clear_m;
+    EXPECT_LE(clear_m, away_m + 1e-8) << p.transpose();
+    EXPECT_GE(clear_m, std::min(away_m, table.support_m()) / 2) << p.transpose();  // worth asking
+  }
+}
+TEST(TriangleRuns, FindWhatLookingAtAllFinds) {
+  const testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.015, 0.03}, 1.3e-3);
+  TriangleRuns runs;
+  runs.build(mesh.positions, mesh.triangles);
+  for (int k = 0; k < 500; ++k) {  // on planes of symmetry too, where several are equally near
+    const Vec3 p = 5e-4 * Vec3(k * 37 % 41, k * 73 % 31, k * 91 % 61);
+    for (const int guess : {-1, k % 7}) {
+      const NearestPoint a = nearestPoint(p, mesh.positions, mesh.triangles);
+      const NearestPoint b = runs.nearest(p, mesh.positions, mesh.triangles, guess);
+      EXPECT_EQ(a.triangle, b.triangle) << p.transpose();
+      EXPECT_EQ(a.distance_m, b.distance_m) << p.transpose();
+    }
+  }
+}
 TEST(WallField, ContactsTellSideAndGap) {
   const testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.02, 1e-3}, 1e-3);
   const KernelTable table{Kernel(KernelKind::cubicSpline, 4e-3)};
