@@ -151,7 +151,7 @@ double Coating::gap_m(const Scene& s, const Face& f) const {
 double Coating::narrowGap_m(const Scene& s, const Face& f) const {
   double least = INFINITY;
   const double reach_m = (kShut + kFaceRadius) * spacing_m_, aside_m = kFaceRadius * spacing_m_;
-  faces_.rowsAround(f.centre, [&](int first, int last) {
+  faces_.rowsAround(f.centre, reach_m, [&](int first, int last) {
     for (int e = first; e < last; ++e) {
       const Vec3 d = centres_[e] - f.centre;
       const double along = d.dot(f.inward), all = d.squaredNorm();

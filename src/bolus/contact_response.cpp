@@ -14,6 +14,8 @@ constexpr int kRescues = 4;             // times a particle outside is looked at
 // Farther in one go no wall pushes, in spacings, assumed (0.1 to 0.5): where sheets cross and part,
 // a cusp opens at once, and what it held comes out bit by bit.
 constexpr double kLongestPush = 0.2;
+// After a push no longer than this no wall point is looked for again; spacings, assumed (1e-3 to 0.03).
+constexpr double kSmallPush = 0.01;
 constexpr double kJustInside = 1e-3;  // spacings, assumed: small against the smallest gap
 
 double keptDistance(double gap_m, double spacing_m) {
@@ -36,21 +38,40 @@ void clampVelocity(const std::vector<Contact>& contacts, double gap_m, double sp
                    double dt_s, Vec3& v) {
   if (contacts.empty()) return;
   const double kept = keptDistance(gap_m, spacing_m);
-  for (int pass = 0; pass < kPasses; ++pass)
+  bool turned = true;
+  for (int pass = 0; pass < kPasses && turned; ++pass) {
+    turned = false;
     for (const Contact& c : contacts) {
       const double least = std::min(0.0, (kept - c.distance_m) / dt_s);
       const double approach = (v - c.velocity).dot(c.inward);
-      if (approach < least) v += (least - approach) * c.inward;
+      if (!(approach < least)) continue;
+      v += (least - approach) * c.inward;
+      turned = contacts.size() > 1;
     }
+  }
 }
 
 void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& x) {
   const double kept = keptDistance(localGap_m(contacts), spacing_m);
-  for (int pass = 0; pass < kPasses; ++pass)
+  bool moved = true;
+  for (int pass = 0; pass < kPasses && moved; ++pass) {
+    moved = false;
     for (const Contact& c : contacts) {
       const double d = (x - c.point).dot(c.inward);
-      if (d < kept) x += (kept - d) * c.inward;
+      if (!(d < kept)) continue;
+      x += (kept - d) * c.inward;
+      moved = contacts.size() > 1;
     }
+  }
+}
+
+bool measureAgain(std::vector<Contact>& contacts, const Vec3& x) {
+  bool inside = true;
+  for (Contact& c : contacts) {
+    c.distance_m = (x - c.point).dot(c.inward);
+    inside = inside && c.distance_m >= 0;
+  }
+  return inside;
 }
 
 bool projectInside(const WallField& field, double spacing_m, bool film, Vec3& x,
@@ -76,6 +97,7 @@ bool projectInside(const WallField& field, double spacing_m, bool film, Vec3& x,
   keepDistance(out, spacing_m, x);
   if (x == before) return wasOutside;
   const double pushed = (x - before).norm();
+  if (pushed < kSmallPush * spacing_m && measureAgain(out, x)) return wasOutside;
   if (pushed > longest) x = before + longest / pushed * (x - before);
   field.contacts(x, reach, out);
   if (!out.empty() && out[0].distance_m < 0) stayAt(before);  // a corner threw it out

@@ -26,6 +26,9 @@ void clampVelocity(const std::vector<Contact>& contacts, double gap_m, double sp
 /// Moves x away from the walls that it is nearer to than it may be.
 void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& x);
 
+/// Distances from the same wall points to x; false when it is behind one.
+bool measureAgain(std::vector<Contact>& contacts, const Vec3& x);
+
 /// Moves x to where it keeps its distance (a film: just inside) and leaves the contacts of that
 /// place; bit by bit where that is far. Returns true when it was outside.
 bool projectInside(const WallField& field, double spacing_m, bool film, Vec3& x,

@@ -9,7 +9,6 @@
 namespace swallowclip::bolus {
 namespace {
 constexpr int kWallChunk = 16;  // particles per work item of wall work
-constexpr int kDensityChunk = 512;
 constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
 // More than contacts reach, for rounding and walls that speed up; spacings, assumed (0.05 to 0.2).
 constexpr double kClearMargin = 0.1;
@@ -139,6 +138,8 @@ void Solver::Impl::updateStates() {
     active[i] = s == State::fluid;
   }
   for (const int i : takenUp) sampleWallsOf(i);
+  for (std::size_t i = 0; i < active.size(); ++i)
+    if (!active[i]) particles.densityRatio[i] = 1;
 }
 
 bool Solver::Impl::staysFilm(std::size_t i) const {
@@ -212,16 +213,9 @@ bool Solver::Impl::followContacts(int i) {
   if (fastestWall_ms > 0 || !wallsStood ||
       (particles.positions[i] - contactsAt[i]).squaredNorm() > most_m * most_m)
     return false;
-  for (Contact& c : contacts[i]) {
-    c.distance_m = (particles.positions[i] - c.point).dot(c.inward);
-    if (c.distance_m < 0) return false;
-  }
+  if (!measureAgain(contacts[i], particles.positions[i])) return false;
   keepDistance(contacts[i], def.spacing_m, particles.positions[i]);
-  for (Contact& c : contacts[i]) {
-    c.distance_m = (particles.positions[i] - c.point).dot(c.inward);
-    if (c.distance_m < 0) return false;
-  }
-  return true;
+  return measureAgain(contacts[i], particles.positions[i]);
 }
 
 // While walls and particles hardly move, in wcsph's short steps or where walls stand still, most of
@@ -296,8 +290,17 @@ void Solver::Impl::findNeighbours() {
   const double longest_m = kMostSkin * def.spacing_m, step_m = 2 * std::sqrt(fastest2) * lastStep_s;
   double skin_m = std::clamp(kListSteps * step_m, kLeastSkin * def.spacing_m, longest_m);
   if (kLeastListSteps * step_m > longest_m) skin_m = 0;
-  neighbours.build(particles.positions, active, table, volume_m3, def.period_m, skin_m, pool);
-  findDensities();
+  neighbours.build(particles.positions, active, table, volume_m3, def.period_m, skin_m, pool,
+                   findDensities());
+}
+
+Neighbours::Range Solver::Impl::findDensities() {
+  return [this](int begin, int end) {
+    for (int s = begin; s < end; ++s) {
+      const int i = neighbours.id[s];
+      particles.densityRatio[i] = neighbours.sumW[s] + walls[i].lambda;
+    }
+  };
 }
 
 void Solver::Impl::wrapPeriods() {
@@ -315,18 +318,8 @@ int Solver::Impl::meetWalls(double t_s) {
   const int rescued = pushInside();
   updateStates();
   updatePath(false);
-  if (neighbours.follow(particles.positions, active, table, volume_m3, pool))
-    findDensities();
-  else
+  if (!neighbours.follow(particles.positions, active, table, volume_m3, pool, findDensities()))
     findNeighbours();
   return rescued;
-}
-
-void Solver::Impl::findDensities() {
-  pool.forChunks(static_cast<int>(active.size()), kDensityChunk, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i)
-      particles.densityRatio[i] =
-          active[i] ? neighbours.sumW[neighbours.slot[i]] + walls[i].lambda : 1.0;
-  });
 }
 }  // namespace swallowclip::bolus

@@ -10,18 +10,10 @@
 namespace swallowclip::bolus {
 namespace {
 constexpr int kChunk = 64;          // particles per work item
+constexpr int kPlacesAlone = 1000;  // are set sooner than a thread wakes, assumed (500 to 2000)
 constexpr float kFarAway = 1e18f;   // m; fills vectors up, its square is still a number
 constexpr int kMaxCells = 1 << 21;  // a stray particle must not cost the memory of a continent
 }  // namespace
-
-Eigen::Vector3i PointGrid::cellOf(const Vec3& p) const {
-  // clamped to one cell outside the box, so that far queries visit nothing
-  Eigen::Vector3i c;
-  for (int k = 0; k < 3; ++k)
-    c[k] =
-        static_cast<int>(std::floor(std::clamp((p[k] - low_[k]) / cell_m_, -2.0, size_[k] + 1.0)));
-  return c;
-}
 
 void PointGrid::build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                       double cell_m) {
@@ -51,7 +43,7 @@ void PointGrid::build(std::span<const Vec3> points, std::span<const std::uint8_t
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!taken(i)) continue;
     const Eigen::Vector3i c =
-        cellOf(points[i]).cwiseMin(size_.array().matrix() - Eigen::Vector3i::Ones());
+        cellOf(points[i]).cwiseMax(0).cwiseMin(size_.array().matrix() - kOne);
     cell_[i] = (c.z() * size_.y() + c.y()) * size_.x() + c.x();
     ++start_[cell_[i] + 1];
   }
@@ -166,15 +158,52 @@ void Neighbours::around(const Vec3& p, std::vector<Near>& out) const {
 }
 
 namespace {
-/// Places within reach of (x, y, z) among the sorted points [begin, end); returns how many.
-SC_CLONES int within(const float* sx, const float* sy, const float* sz, int begin, int end, float x,
-                     float y, float z, float reach2, int* out) {
+/// Sorted points that one cell's own look at, as flat arrays of whole vectors.
+struct Block {
+  std::vector<float> x, y, z;
+  std::vector<int> place;
+  int count = 0;
+  void reserve(int more) {
+    const std::size_t n = count + more + simd::kLanes;
+    if (place.size() >= n) return;
+    for (auto* a : {&x, &y, &z}) a->resize(2 * n);
+    place.resize(2 * n);
+  }
+};
+
+struct Points {
+  const float *x, *y, *z;
+};
+/// Appends the points of [begin, end) within reach of a box, by the square.
+SC_CLONES void nearBox(const Points& p, int begin, int end, const float* low, const float* high,
+                       float reach2, Block& out) {
+  using namespace simd;
+  out.reserve(end - begin);
+  int* place = out.place.data();
+  int n = out.count;
+  for (int k = begin; k < end; k += kLanes) {
+    const F8 x = load(p.x + k), y = load(p.y + k), z = load(p.z + k), none = all(0);
+    const F8 dx = largest(largest(all(low[0]) - x, x - all(high[0])), none);
+    const F8 dy = largest(largest(all(low[1]) - y, y - all(high[1])), none);
+    const F8 dz = largest(largest(all(low[2]) - z, z - all(high[2])), none);
+    const I8 near = (dx * dx + dy * dy + dz * dz < all(reach2)) & (kCount < allInt(end - k));
+    n += putLanes(near, k, place + n);
+  }
+  for (int e = out.count; e < n; ++e) {
+    out.x[e] = p.x[place[e]];
+    out.y[e] = p.y[place[e]];
+    out.z[e] = p.z[place[e]];
+  }
+  out.count = n;
+}
+
+/// Places of a block (filled up with points far away) within reach of (x, y, z); returns how many.
+SC_CLONES int within(const Block& b, float x, float y, float z, float reach2, int* out) {
   using namespace simd;
   int found = 0;
-  for (int k = begin; k < end; k += kLanes) {
-    const F8 dx = all(x) - load(sx + k), dy = all(y) - load(sy + k), dz = all(z) - load(sz + k);
-    const I8 near = (dx * dx + dy * dy + dz * dz < all(reach2)) & (kCount < allInt(end - k));
-    found += putLanes(near, k, out + found);
+  for (int k = 0; k < b.count; k += kLanes) {
+    const F8 dx = all(x) - load(&b.x[k]), dy = all(y) - load(&b.y[k]), dz = all(z) - load(&b.z[k]);
+    found += putValues(dx * dx + dy * dy + dz * dz < all(reach2), loadInt(&b.place[k]), out + found);
   }
   return found;
 }
@@ -201,22 +230,19 @@ struct List {
   float *r, *gx, *gy, *gz;  ///< gradients V W'(r) / r d
   float *sumG, *moment;     ///< as in Neighbours
 };
-/// Fills a list's gradients and sums; returns the sum of V W.
+/// Fills a list's gradients and sums; returns the sum of V W. What fills the list up is so far away
+/// that it adds zeros.
 SC_CLONES double gradients(const KernelTable& table, float volume, const List& l) {
   using namespace simd;
   const float perHalfSupport = static_cast<float>(2 / table.support_m());
   const float w0 = static_cast<float>(table.selfW());
   const float scale = volume * w0 * perHalfSupport * perHalfSupport;
-  const F8 farthest = all(static_cast<float>(2 * table.support_m()));
   // one name for each sum: an array of them would live in memory
   F8 total = all(0), sumX = all(0), sumY = all(0), sumZ = all(0);
   F8 xx = all(0), yy = all(0), zz = all(0), xy = all(0), xz = all(0), yz = all(0);
   for (int k = 0; k < l.length; k += kLanes) {
     const F8x3 o = gather3(l.places, l.neighbours + k);
-    // what fills up the list is far away
-    const F8 x = smallest(all(l.own[0]) - o.x, farthest),
-             y = smallest(all(l.own[1]) - o.y, farthest),
-             z = smallest(all(l.own[2]) - o.z, farthest);
+    const F8 x = all(l.own[0]) - o.x, y = all(l.own[1]) - o.y, z = all(l.own[2]) - o.z;
     const F8 distance = root(x * x + y * y + z * z);
     store(l.r + k, distance);
     F8 value, slope;
@@ -263,36 +289,53 @@ SC_CLONES double gradients(const KernelTable& table, float volume, const List& l
 }
 }  // namespace
 
+// All of a cell look at the same points, which are picked out once.
 void Neighbours::search(int begin, int end, float reach, Found& out) const {
   using simd::kLanes;
+  thread_local Block block;
   out.length.clear();
   std::vector<int>& places = out.places;
   std::size_t n = 0;
-  for (int i = begin; i < end; ++i) {
-    const std::size_t old = n;
-    const int self = self_[i];
-    const float x = sx_[self], y = sy_[self], z = sz_[self];
-    const int cx = cellAlong(x, 0), cy = cellAlong(y, 1), cz = cellAlong(z, 2);
-    for (int rz = std::max(cz - 1, 0); rz <= std::min(cz + 1, size_.z() - 1); ++rz)
-      for (int ry = std::max(cy - 1, 0); ry <= std::min(cy + 1, size_.y() - 1); ++ry) {
-        const int row = (rz * size_.y() + ry) * size_.x();
-        const int first = cellStart_[row + std::max(cx - 1, 0)];
-        const int last = cellStart_[row + std::min(cx + 1, size_.x() - 1) + 1];
-        places.resize(std::max(places.size(), n + last - first + 2 * kLanes));
-        n += within(sx_.data(), sy_.data(), sz_.data(), first, last, x, y, z, reach * reach,
-                    &places[n]);
+  for (int i = begin; i < end;) {
+    const int first = self_[i];
+    const Eigen::Vector3i cell = cellOf(first);
+    float low[3] = {sx_[first], sy_[first], sz_[first]}, high[3] = {low[0], low[1], low[2]};
+    int last = i + 1;  // of this cell's
+    for (; last < end && cellOf(self_[last]) == cell; ++last) {
+      const float at[3] = {sx_[self_[last]], sy_[self_[last]], sz_[self_[last]]};
+      for (int a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], at[a]);
+        high[a] = std::max(high[a], at[a]);
       }
-    const auto own = std::find(places.begin() + old, places.begin() + n, self);
-    std::copy(own + 1, places.begin() + n, own);
-    for (--n; (n - old) % kLanes != 0; ++n)
-      places[n] = static_cast<int>(shift_.size());  // far away
-    out.length.push_back(static_cast<int>(n - old));
+    }
+    block.count = 0;
+    const Eigen::Vector3i from = (cell.array() - 1).max(0), to = (cell + kOne).cwiseMin(size_ - kOne);
+    for (int rz = from.z(); rz <= to.z(); ++rz)
+      for (int ry = from.y(); ry <= to.y(); ++ry) {
+        const int row = (rz * size_.y() + ry) * size_.x();
+        nearBox({sx_.data(), sy_.data(), sz_.data()}, cellStart_[row + from.x()],
+                cellStart_[row + to.x() + 1], low, high, reach * reach, block);
+      }
+    block.reserve(0);
+    for (int k = block.count; k < block.count + kLanes; ++k)
+      block.x[k] = block.y[k] = block.z[k] = kFarAway;
+    for (; i < last; ++i) {
+      const std::size_t old = n;
+      const int self = self_[i];
+      places.resize(std::max(places.size(), n + block.count + 2 * kLanes));
+      n += within(block, sx_[self], sy_[self], sz_[self], reach * reach, &places[n]);
+      const auto own = std::find(places.begin() + old, places.begin() + n, self);
+      std::copy(own + 1, places.begin() + n, own);
+      for (--n; (n - old) % kLanes != 0; ++n)
+        places[n] = static_cast<int>(shift_.size());  // far away
+      out.length.push_back(static_cast<int>(n - old));
+    }
   }
 }
 
 void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                        const KernelTable& kernel, double volume_m3, const Vec3& period_m,
-                       double skin_m, ThreadPool& pool) {
+                       double skin_m, ThreadPool& pool, const Range& then) {
   support_m_ = kernel.support_m();
   skin_m_ = skin_m;
   sortIntoCells(points, take, support_m_ + skin_m, period_m);
@@ -314,31 +357,37 @@ void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_
   sumW.resize(count);
   sumG.shape(count, 0);
   moment.shape(count, 0);
-  measure(kernel, volume_m3, pool);
+  measure(kernel, volume_m3, pool, then);
 }
 
 bool Neighbours::follow(std::span<const Vec3> points, std::span<const std::uint8_t> take,
-                        const KernelTable& kernel, double volume_m3, ThreadPool& pool) {
+                        const KernelTable& kernel, double volume_m3, ThreadPool& pool,
+                        const Range& then) {
   const double most2 = skin_m_ * skin_m_ / 4;
   if (most2 == 0 || slot.size() != points.size()) return false;
   for (std::size_t p = 0; p < points.size(); ++p) {
     if ((take.empty() || take[p]) != (slot[p] >= 0)) return false;
     if (slot[p] >= 0 && !((points[p] - builtAt_[slot[p]]).squaredNorm() < most2)) return false;
   }
-  pool.forChunks(static_cast<int>(shift_.size()), kChunk, [&](int begin, int end, int) {
-    for (int s = begin; s < end; ++s) places_.set(s, points[id[owner_[s]]] + shift_[s] - low_);
-  });
-  measure(kernel, volume_m3, pool);
+  pool.forChunks(
+      static_cast<int>(shift_.size()), kChunk,
+      [&](int begin, int end, int) {
+        for (int s = begin; s < end; ++s) places_.set(s, points[id[owner_[s]]] + shift_[s] - low_);
+      },
+      kPlacesAlone);
+  measure(kernel, volume_m3, pool, then);
   return true;
 }
 
 // Gradients and sums of who is within the kernel's support.
-void Neighbours::measure(const KernelTable& kernel, double volume_m3, ThreadPool& pool) {
+void Neighbours::measure(const KernelTable& kernel, double volume_m3, ThreadPool& pool,
+                         const Range& then) {
   using simd::kLanes;
   const float reach = static_cast<float>(support_m_), volume = static_cast<float>(volume_m3);
   const int farAway = static_cast<int>(shift_.size());
   pool.forChunks(count, kChunk, [&](int begin, int end, int) {
     thread_local std::vector<int> near;
+    const bool images = farAway > count;  // else slots are places
     for (int i = begin; i < end; ++i) {
       const int first = start[i], most = start[i + 1] - first;
       near.resize(std::max<std::size_t>(near.size(), most + kLanes));
@@ -347,12 +396,16 @@ void Neighbours::measure(const KernelTable& kernel, double volume_m3, ThreadPool
                           near.data());
       for (; n % kLanes != 0; ++n) near[n] = farAway;
       stop[i] = first + n;
-      for (int k = 0; k < n; ++k) index[first + k] = owner_[near[k]];
+      if (images)
+        for (int k = 0; k < n; ++k) index[first + k] = owner_[near[k]];
+      else
+        std::copy_n(near.begin(), n, index.begin() + first);
       sumW[i] = volume_m3 * kernel.selfW() +
                 gradients(kernel, volume,
                           {places_.data(), own, near.data(), n, r.data() + first, gx.data() + first,
                            gy.data() + first, gz.data() + first, sumG[i], moment[i]});
     }
+    if (then) then(begin, end);
   });
 }
 }  // namespace swallowclip::bolus

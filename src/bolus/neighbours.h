@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,25 +22,32 @@ class PointGrid {
   /// Only points with take[i] != 0 enter; an empty `take` takes all.
   void build(std::span<const Vec3> points, std::span<const std::uint8_t> take, double cell_m);
 
-  /// Calls visit(first, last) for each row of the 27 cells around p: places in order().
+  /// Calls visit(first, last) for each row of the cells within reach_m of p along every axis: places
+  /// in order().
   template <class Visit>
-  void rowsAround(const Vec3& p, Visit&& visit) const {
+  void rowsAround(const Vec3& p, double reach_m, Visit&& visit) const {
     if (order_.empty()) return;
-    const Eigen::Vector3i c = cellOf(p);
-    for (int z = std::max(c.z() - 1, 0); z <= std::min(c.z() + 1, size_.z() - 1); ++z)
-      for (int y = std::max(c.y() - 1, 0); y <= std::min(c.y() + 1, size_.y() - 1); ++y) {
-        const int x0 = std::max(c.x() - 1, 0), x1 = std::min(c.x() + 1, size_.x() - 1);
-        if (x0 > x1) continue;
+    const Vec3 reach = Vec3::Constant(reach_m);
+    const Eigen::Vector3i low = cellOf(p - reach).cwiseMax(0),
+                          high = cellOf(p + reach).cwiseMin(size_.array().matrix() - kOne);
+    if (low.x() > high.x()) return;
+    for (int z = low.z(); z <= high.z(); ++z)
+      for (int y = low.y(); y <= high.y(); ++y) {
         const int row = (z * size_.y() + y) * size_.x();
-        visit(start_[row + x0], start_[row + x1 + 1]);
+        const int first = start_[row + low.x()], last = start_[row + high.x() + 1];
+        if (first < last) visit(first, last);
       }
   }
 
   const std::vector<int>& order() const { return order_; }
 
  private:
-  Eigen::Vector3i cellOf(const Vec3& p) const;
+  Eigen::Vector3i cellOf(const Vec3& p) const {  // one outside at most, so that rows are few
+    const Eigen::Array3d at = ((p - low_) / cell_m_).array().floor();
+    return at.max(-1).min(size_.cast<double>().array()).cast<int>();
+  }
 
+  static inline const Eigen::Vector3i kOne = Eigen::Vector3i::Ones();
   double cell_m_ = 1;
   Vec3 low_ = Vec3::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
@@ -62,14 +70,17 @@ struct Neighbours {
   Tensors moment;                 ///< [count] sum of r |g| n n, n along the pair: one when full
 
   /// `take` [particle] says who is active. With a period, images count as neighbours too. Who might
-  /// be a neighbour is looked for within `skin_m` more than the kernel reaches.
+  /// be a neighbour is looked for within `skin_m` more than the kernel reaches. `then` is called
+  /// for ranges of slots that are done.
+  using Range = std::function<void(int begin, int end)>;
   void build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
              const KernelTable& kernel, double volume_m3, const Vec3& period_m, double skin_m,
-             ThreadPool& pool);
+             ThreadPool& pool, const Range& then = {});
   /// The same particles in new places, of whom nobody has moved by more than half the skin since
   /// they were built; else, or when others are active, nothing is done and false returned.
   bool follow(std::span<const Vec3> points, std::span<const std::uint8_t> take,
-              const KernelTable& kernel, double volume_m3, ThreadPool& pool);
+              const KernelTable& kernel, double volume_m3, ThreadPool& pool,
+              const Range& then = {});
 
   PairLists lists() const {
     return {start.data(), stop.data(), index.data(), gx.data(), gy.data(), gz.data()};
@@ -89,10 +100,14 @@ struct Neighbours {
   void sortIntoCells(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                      double cell_m, const Vec3& period_m);
   void search(int begin, int end, float reach_m, Found& out) const;
-  void measure(const KernelTable& kernel, double volume_m3, ThreadPool& pool);
+  void measure(const KernelTable& kernel, double volume_m3, ThreadPool& pool, const Range& then);
 
+  static inline const Eigen::Vector3i kOne = Eigen::Vector3i::Ones();
   int cellAlong(float x_m, int axis) const {
     return std::min(static_cast<int>(x_m / cell_m_), size_[axis] - 1);
+  }
+  Eigen::Vector3i cellOf(int place) const {  // when built
+    return {cellAlong(sx_[place], 0), cellAlong(sy_[place], 1), cellAlong(sz_[place], 2)};
   }
 
   // sorted places, images of periodic neighbours among them, and one more far away from all

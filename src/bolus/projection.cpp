@@ -62,6 +62,7 @@ void Projection::prepare(const Flow& f) {
   }
   across_.resize(n);
   stress_.resize(n);
+  force_.resize(3 * n);
   wall_.shape(n, simd::kLanes);
   acceleration_.shape(n, simd::kLanes);
   velocity_.shape(n, 1);
@@ -79,29 +80,57 @@ void Projection::prepare(const Flow& f) {
         across_[i] = along_[i] / square;
       }
       mobility_[i] = 1;
+      x_[i] = static_cast<float>(rateK_[f.particle(i)]);
     }
   });
 }
 
-void Projection::brake(const Flow& f, std::span<const double> wallDrag) {
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      if (!wallDrag.empty()) mobility_[i] = static_cast<float>(1 / (1 + wallDrag[f.particle(i)]));
-      freedom_[i] = mobility_[i] * (1 + along_[i]);
-    }
-  });
+// In single precision: what is put in is taken out again, so that momentum does not feel it.
+void Projection::pushByLastPressure(const Flow& f, double dt_s, std::vector<Vec3>& v, int begin,
+                                    int end) {
+  findAccelerations(pressureOf(f, x_), begin, end);
+  for (int i = begin; i < end; ++i) v[f.particle(i)] += dt_s * acceleration_.at(i).cast<double>();
+}
+
+void Projection::brake(const Flow& f, std::span<const double> wallDrag, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    if (!wallDrag.empty()) mobility_[i] = static_cast<float>(1 / (1 + wallDrag[f.particle(i)]));
+    freedom_[i] = mobility_[i] * (1 + along_[i]);
+  }
+}
+
+void Projection::takeLastPressureBack(const Flow& f, double dt_s, std::vector<Vec3>& v, int begin,
+                                      int end) {
   const DiagonalSweep sweep{f.lists(), freedom_.data(), wall_.data(), diagonal_.data()};
-  f.sweep([&](int begin, int end, int) { sweep.run(begin, end); });
+  sweep.run(begin, end);
+  for (int i = begin; i < end; ++i)
+    v[f.particle(i)] -= dt_s * mobility_[i] * acceleration_.at(i).cast<double>();
+  startAt(f, v, rateK_, begin, end);
 }
 
-/// source(slot, rate of rho* in 1/s) into source_; where the solve starts into x_ and y_.
+void Projection::startFrom(const Flow& f, const std::vector<Vec3>& v, int begin, int end) {
+  startAt(f, v, densityK_, begin, end);
+}
+
+void Projection::startAt(const Flow& f, const std::vector<Vec3>& v,
+                         const std::vector<double>& warmK, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const int p = f.particle(i);
+    velocity_.set(i, v[p]);
+    x_[i] = y_[i] = diagonal_[i] > 0 ? static_cast<float>(warmK[p]) : 0.f;
+  }
+}
+
+PressureSweep Projection::pressureOf(const Flow& f, const std::vector<float>& k) {
+  return {f.lists(), k.data(), mobility_.data(), wall_.data(), acceleration_.data()};
+}
+
+/// source(slot, rate of rho* in 1/s) into source_; with `pushes`, what the first pressure does, too.
 template <class Source>
-void Projection::findSource(const Flow& f, const std::vector<Vec3>& v,
-                            const std::vector<double>& warmK, Source&& source) {
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) velocity_.set(i, v[f.particle(i)]);
-  });
+void Projection::findSource(const Flow& f, const std::vector<Vec3>& v, bool pushes,
+                            Source&& source) {
   const RateSweep sweep{f.lists(), velocity_.data(), source_.data()};
+  const PressureSweep pressure = pressureOf(f, y_);
   asked_.assign((f.count() + kSweepChunk - 1) / kSweepChunk, {});
   f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
@@ -112,9 +141,9 @@ void Projection::findSource(const Flow& f, const std::vector<Vec3>& v,
                                                          kWallMirror * f.walls[p].flux_s);
       source_[i] = static_cast<float>(source(i, static_cast<double>(rate)));
       asked.add(source_[i], full);
-      x_[i] = y_[i] = diagonal_[i] > 0 ? static_cast<float>(warmK[p]) : 0.f;
     }
     asked_[chunk] = asked;
+    if (pushes) findAccelerations(pressure, begin, end);
   });
   if (!full || f.count() == 0) return;
   // What compresses all of a full room alike has no solution and no meaning.
@@ -124,14 +153,14 @@ void Projection::findSource(const Flow& f, const std::vector<Vec3>& v,
   for (int i = 0; i < f.count(); ++i) asked_[0].add(source_[i] -= static_cast<float>(mean), true);
 }
 
-// (-D a(k)) = source,  k >= 0.  source_ in 1/s^2.
+// (-D a(k)) = source,  k >= 0.  source_ in 1/s^2. With `least` above 0 the first accelerations are
+// there already.
 ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int cap,
                                      double tolerance, std::vector<double>& warmK) {
   ProjectionReport report;
   const int n = f.count();
   if (n == 0) return report;
-  const PressureSweep pressure{f.lists(), y_.data(), mobility_.data(), wall_.data(),
-                               acceleration_.data()};
+  const PressureSweep pressure = pressureOf(f, y_);
   StepSweep step{f.lists(),
                  acceleration_.data(),
                  wall_.data(),
@@ -157,7 +186,8 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
     const double next = (1 + std::sqrt(1 + 4 * theta * theta)) / 2;
     step.momentum = static_cast<float>((theta - 1) / next);
     theta = next;
-    f.sweep([&](int b, int e, int) { findAccelerations(pressure, b, e); });
+    if (report.iterations > 1 || least == 0)
+      f.sweep([&](int b, int e, int) { findAccelerations(pressure, b, e); });
     f.sweep([&](int b, int e, int c) { parts_[c] = step.run(b, e); });
     StepSweep::Sums left;
     for (const StepSweep::Sums& p : parts_) {
@@ -187,10 +217,9 @@ void Projection::findAccelerations(const PressureSweep& pressure, int begin, int
 }
 
 // v += dt a(x_), and x_ is where the next solve starts.
-void Projection::accelerate(const Flow& f, double dt_s, std::vector<double>& warmK,
-                            std::vector<Vec3>& v, float* stress) {
-  force_.resize(3 * f.count());
-  const GradientSweep gradient{f.lists(), x_.data(), force_.data(), f.neighbours.r.data(), stress};
+void Projection::accelerate(const Flow& f, double dt_s, std::vector<Vec3>& v, const Range& then) {
+  const GradientSweep gradient{f.lists(), x_.data(), force_.data(), f.neighbours.r.data(),
+                               stress_.data()};
   f.sweep([&](int begin, int end, int) {
     gradient.run(begin, end);
     for (int i = begin; i < end; ++i) {
@@ -198,60 +227,43 @@ void Projection::accelerate(const Flow& f, double dt_s, std::vector<double>& war
       Vec3 a = -Vec3(&force_[3 * i]) - static_cast<double>(x_[i]) * w;
       if (along_[i] != 0) a += along_[i] * a - across_[i] * a.dot(w) * w;
       v[f.particle(i)] += dt_s * mobility_[i] * a;
-      warmK[f.particle(i)] = x_[i];
+      rateK_[f.particle(i)] = x_[i];
     }
+    then(begin, end);
   });
-}
-
-// In single precision: what is put in is taken out again, so that momentum does not feel it.
-void Projection::pushByLastPressure(const Flow& f, double dt_s, std::vector<Vec3>& v) {
-  const PressureSweep pressure{f.lists(), x_.data(), mobility_.data(), wall_.data(),
-                               acceleration_.data()};
-  for (int i = 0; i < f.count(); ++i) x_[i] = static_cast<float>(rateK_[f.particle(i)]);
-  f.sweep([&](int begin, int end, int) {
-    findAccelerations(pressure, begin, end);
-    for (int i = begin; i < end; ++i) v[f.particle(i)] += dt_s * acceleration_.at(i).cast<double>();
-  });
-}
-
-void Projection::takeLastPressureBack(const Flow& f, double dt_s, std::vector<Vec3>& v) {
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i)
-      v[f.particle(i)] -= dt_s * mobility_[i] * acceleration_.at(i).cast<double>();
-  });
-}
-
-void Projection::stress_m2s2(const Flow& f, std::vector<double>& stress) const {
-  stress.assign(densityK_.size(), 0.0);
-  for (int i = 0; i < f.count(); ++i) {
-    const int p = f.particle(i);
-    stress[p] = stress_[i] + rateK_[p] * f.walls[p].lambdaSlope;
-  }
 }
 
 ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<double>& density,
-                                            double dt_s, std::vector<Vec3>& v) {
+                                            double dt_s, std::vector<Vec3>& v, const Range& then) {
   // what is still below rest density may close up; nothing is pulled apart
-  findSource(f, v, rateK_, [&](int i, double rate_s) {
+  findSource(f, v, kLeastRate > 0, [&](int i, double rate_s) {
     const double room = std::max(0.0, 1 - density[f.particle(i)]);
     const double open =
         full ? 0 : std::max(0.0, room - kOpening) / dt_s + std::min(room, kOpening) / kSettle_s;
     return (rate_s - open) / dt_s;
   });
   const ProjectionReport report = project(f, dt_s, kLeastRate, kRateCap, tolerances.rate, rateK_);
-  accelerate(f, dt_s, rateK_, v, stress_.data());
+  accelerate(f, dt_s, v, then);
   return report;
 }
 
 ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<double>& density,
                                              double dt_s, std::vector<Vec3>& v) {
   const double within_s = std::max(dt_s, kCorrection_s);
-  findSource(f, v, densityK_, [&](int i, double rate_s) {
+  findSource(f, v, kLeastDensity > 0, [&](int i, double rate_s) {
     return (rate_s + (density[f.particle(i)] - 1) / within_s) / dt_s;
   });
   const ProjectionReport report =
       project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, densityK_);
-  if (report.iterations > 0) accelerate(f, dt_s, densityK_, v);
+  if (report.iterations == 0) return report;
+  // places have no momentum to be kept, single precision does
+  f.sweep([&](int begin, int end, int) {
+    findAccelerations(pressureOf(f, x_), begin, end);
+    for (int i = begin; i < end; ++i) {
+      v[f.particle(i)] += dt_s * acceleration_.at(i).cast<double>();
+      densityK_[f.particle(i)] = x_[i];
+    }
+  });
   return report;
 }
 }  // namespace swallowclip::bolus

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -54,31 +55,43 @@ struct ProjectionReport {
 
 class Projection {
  public:
+  /// Work on the slots [begin, end) that others do in the same sweep.
+  using Range = std::function<void(int begin, int end)>;
+
   /// Before anything else of a step.
   void prepare(const Flow& flow);
-  /// Before the projections of a step. `wallDrag` ([particle], dt times the rate at which walls
-  /// brake it; empty: none) lets pressure move a particle only as far as the walls' friction allows
-  /// within the step: a_i / (1 + drag_i), the implicit Brinkman term. Without it a narrow slit is
-  /// squeezed out as if the fluid had no viscosity.
-  void brake(const Flow& flow, std::span<const double> wallDrag);
-  /// Removes compression rate where rho* would pass one; `velocities` (m/s) in and out.
-  ProjectionReport divergenceFree(const Flow& flow, const std::vector<double>& densityRatio,
-                                  double dt_s, std::vector<Vec3>& velocities);
-  /// Makes the density at the end of the step at most rho0; `velocities` are those that move.
-  ProjectionReport constantDensity(const Flow& flow, const std::vector<double>& densityRatio,
-                                   double dt_s, std::vector<Vec3>& velocities);
   /// Adds dt times the acceleration by the pressure of the last divergenceFree to velocities. Put
   /// in before friction and taken out after it, it lets friction act on forces that are in balance;
   /// divergenceFree then finds the whole pressure anew.
-  void pushByLastPressure(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
-  void takeLastPressureBack(const Flow& flow, double dt_s, std::vector<Vec3>& velocities);
+  void pushByLastPressure(const Flow& flow, double dt_s, std::vector<Vec3>& velocities, int begin,
+                          int end);
+  /// Then: `wallDrag` ([particle], dt times the rate at which walls brake it; empty: none) lets
+  /// pressure move a particle only as far as the walls' friction allows within the step:
+  /// a_i / (1 + drag_i), the implicit Brinkman term. Without it a narrow slit is squeezed out as if
+  /// the fluid had no viscosity.
+  void brake(const Flow& flow, std::span<const double> wallDrag, int begin, int end);
+  /// When all are braked.
+  void takeLastPressureBack(const Flow& flow, double dt_s, std::vector<Vec3>& velocities, int begin,
+                            int end);
+  /// Removes compression rate where rho* would pass one; `velocities` (m/s), those that
+  /// takeLastPressureBack left, in and out. `then` is called when those of its slots are done.
+  ProjectionReport divergenceFree(const Flow& flow, const std::vector<double>& densityRatio,
+                                  double dt_s, std::vector<Vec3>& velocities, const Range& then);
+  /// Before constantDensity: which velocities those are.
+  void startFrom(const Flow& flow, const std::vector<Vec3>& velocities, int begin, int end);
+  /// Makes the density at the end of the step at most rho0; `velocities` are those that move.
+  ProjectionReport constantDensity(const Flow& flow, const std::vector<double>& densityRatio,
+                                   double dt_s, std::vector<Vec3>& velocities);
   void resize(int particles);
 
-  /// Force per area (and rho0) that the velocities' projection of the last step transmits, m^2/s^2,
-  /// [particle]: the mean normal stress sum V (k_i + k_j)/2 r |gradW| / 3 of the pairs (Irving &
+  /// Force per area (and rho0) that the velocities' projection of the last step transmits at a
+  /// slot, m^2/s^2: the mean normal stress sum V (k_i + k_j)/2 r |gradW| / 3 of the pairs (Irving &
   /// Kirkwood 1950). k itself is a multiplier: among disordered particles, where gradW of a linear
   /// field comes out 10 % small, it is so much larger, and it zigzags from layer to layer.
-  void stress_m2s2(const Flow& flow, std::vector<double>& stress) const;
+  double stress_m2s2(const Flow& flow, int slot) const {
+    const int p = flow.particle(slot);
+    return stress_[slot] + rateK_[p] * flow.walls[p].lambdaSlope;
+  }
 
   Tolerances tolerances;
   bool full = false;  ///< BolusDef::full
@@ -103,12 +116,14 @@ class Projection {
       most = std::max(most, o.most);
     }
   };
+  void startAt(const Flow& flow, const std::vector<Vec3>& velocities,
+               const std::vector<double>& warmK, int begin, int end);
   template <class Source>
-  void findSource(const Flow& flow, const std::vector<Vec3>& velocities,
-                  const std::vector<double>& warmK, Source&& source);
+  void findSource(const Flow& flow, const std::vector<Vec3>& velocities, bool pushes,
+                  Source&& source);
+  PressureSweep pressureOf(const Flow& flow, const std::vector<float>& k);
   void findAccelerations(const PressureSweep& pressure, int begin, int end);
-  void accelerate(const Flow& flow, double dt_s, std::vector<double>& warmK,
-                  std::vector<Vec3>& velocities, float* stress = nullptr);
+  void accelerate(const Flow& flow, double dt_s, std::vector<Vec3>& velocities, const Range& then);
 
   std::vector<double> densityK_, rateK_;  // [particle], where the next solve starts
   // [slot] and one slot of zeros

@@ -55,6 +55,8 @@ Result<std::vector<Vec3>> seedPlaces(const WallMotion& m, const std::vector<Vec3
   WallField field(table, spacing);
   const std::vector<Vec3> still(x.size(), Vec3::Zero());
   field.build(m.triangles, x, still, box.low, box.high);
+  TriangleRuns runs;
+  runs.build(x, m.triangles);
   std::vector<Contact> contacts;
   int best = 0;
   for (const Lattice& lattice : kLattices)
@@ -84,7 +86,7 @@ Result<std::vector<Vec3>> seedPlaces(const WallMotion& m, const std::vector<Vec3
             if (!within[at]) continue;
             if (!contacts.empty() && contacts[0].distance_m < lattice.wallDistance * spacing)
               continue;
-            if (withinRange(m, nearestPoint(p, x, m.triangles), range)) places.push_back(p);
+            if (withinRange(m, runs.nearest(p, x, m.triangles, -1), range)) places.push_back(p);
           }
       best = std::max(best, static_cast<int>(places.size()));
       if (static_cast<int>(places.size()) < count) continue;

@@ -18,61 +18,72 @@ constexpr double kMostGradient = 0.1;  // of the concentration over a spacing, a
 constexpr double kFullDensity = 0.97;  // of all neighbours: no free surface near, assumed
 }  // namespace
 
-void Shifting::shift(const Flow& f, const std::vector<double>& density, double spacing_m,
-                     const std::vector<Vec3>& v, std::vector<Vec3>& moving) {
+void Shifting::begin(const Flow& f, std::vector<Vec3>& moving) {
   const int n = f.count();
   slope_.resize(n);
   shift_.resize(n);
+  carried_.resize(n);
   density_.resize(n + 1);
   density_[n] = INFINITY;
   least_.resize(n);
   velocity_.shape(n, 1);
-  moving = v;
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      density_[i] = static_cast<float>(density[f.particle(i)]);
-      velocity_.set(i, v[f.particle(i)]);
-    }
-  });
+  moving.resize(f.walls.size());
+}
+
+void Shifting::look(const Flow& f, const std::vector<double>& density, const std::vector<Vec3>& v,
+                    int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    density_[i] = static_cast<float>(density[f.particle(i)]);
+    velocity_.set(i, v[f.particle(i)]);
+  }
+}
+
+void Shifting::shift(const Flow& f, double dt_s, double spacing_m, const std::vector<Vec3>& v,
+                     std::vector<Vec3>& moving, const Projection::Range& then) {
   const LeastSweep least{f.lists(), density_.data(), least_.data()};
   const SlopeSweep slopes{f.lists(), velocity_.data()};
-  f.sweep([&](int begin, int end, int) {
+  parts_.assign((f.count() + kSweepChunk - 1) / kSweepChunk, Vec3::Zero());
+  f.sweep([&](int begin, int end, int chunk) {
     least.run(begin, end);
     for (int i = begin; i < end; ++i) {
+      const int p = f.particle(i);
+      moving[p] = v[p];
       slope_[i].setZero();
       shift_[i].setZero();
+      carried_[i].setZero();
       if (least_[i] < kFullDensity) continue;
-      const int p = f.particle(i);
       Vec3 gradient = spacing_m * (f.walls[p].gradLambda + f.neighbours.sumG.at(i).cast<double>());
       gradient *= kMostGradient / std::max(kMostGradient, gradient.norm());
       slope_[i] = velocityGradient_s(f, slopes, v[p], i);
       const double strength = f.walls[p].lambda > 0 ? kStrengthAtWall : kStrength;
       shift_[i] = -strength * spacing_m * shearRate_s(slope_[i]) * gradient;
       moving[p] += shift_[i];
+      carried_[i] = dt_s * (slope_[i] * shift_[i]);
+      parts_[chunk] += carried_[i];
     }
+    then(begin, end);
   });
 }
 
-void Shifting::carry(const Flow& f, double dt_s, const std::vector<Vec3>& moving,
-                     std::vector<Vec3>& v) {
-  const int n = f.count();
-  carried_.resize(n);
-  std::vector<Vec3> parts((n + kSweepChunk - 1) / kSweepChunk, Vec3::Zero());
-  f.sweep([&](int begin, int end, int chunk) {
-    for (int i = begin; i < end; ++i) {
-      const int p = f.particle(i);
-      // before a wall density pushes layers to and fro, and the start of plane Poiseuille flow
-      // comes out 6 % slow when that is taken for a way gone
-      const Vec3 way_ms = f.walls[p].lambda > 0 ? shift_[i] : Vec3(moving[p] - v[p]);
-      carried_[i] = dt_s * (slope_[i] * way_ms);
-      parts[chunk] += carried_[i];
-    }
-  });
+void Shifting::carry(const Flow& f, double dt_s, bool changed, const std::vector<Vec3>& moving,
+                     std::vector<Vec3>& v, const Projection::Range& then) {
+  if (changed)
+    f.sweep([&](int begin, int end, int chunk) {
+      parts_[chunk].setZero();
+      for (int i = begin; i < end; ++i) {
+        const int p = f.particle(i);
+        // before a wall density pushes layers to and fro, and the start of plane Poiseuille flow
+        // comes out 6 % slow when that is taken for a way gone
+        if (!(f.walls[p].lambda > 0)) carried_[i] = dt_s * (slope_[i] * (moving[p] - v[p]));
+        parts_[chunk] += carried_[i];
+      }
+    });
   Vec3 gained = Vec3::Zero();
-  for (const Vec3& part : parts) gained += part;
-  gained /= std::max(1, n);
+  for (const Vec3& part : parts_) gained += part;
+  gained /= std::max(1, f.count());
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) v[f.particle(i)] += carried_[i] - gained;
+    then(begin, end);
   });
 }
 }  // namespace swallowclip::bolus

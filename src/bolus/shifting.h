@@ -13,18 +13,26 @@ namespace swallowclip::bolus {
 
 class Shifting {
  public:
+  /// Before a step.
+  void begin(const Flow& flow, std::vector<Vec3>& moving);
+  /// The velocities that are there before; shift, when all slots have them.
+  void look(const Flow& flow, const std::vector<double>& densityRatio,
+            const std::vector<Vec3>& velocities, int begin, int end);
   /// `moving` becomes `velocities` plus the velocity of shifting (m/s, [particle]). Nothing happens
-  /// near a free surface, whose own gradient is none to be evened out.
-  void shift(const Flow& flow, const std::vector<double>& densityRatio, double spacing_m,
-             const std::vector<Vec3>& velocities, std::vector<Vec3>& moving);
+  /// near a free surface, whose own gradient is none to be evened out. `then` is called when those
+  /// of its slots are done.
+  void shift(const Flow& flow, double dt_s, double spacing_m, const std::vector<Vec3>& velocities,
+             std::vector<Vec3>& moving, const Projection::Range& then);
   /// Gives shifted particles the velocity of where `moving` takes them in dt_s; momentum is kept.
-  void carry(const Flow& flow, double dt_s, const std::vector<Vec3>& moving,
-             std::vector<Vec3>& velocities);
+  /// `changed`: it is no longer what shift made it.
+  void carry(const Flow& flow, double dt_s, bool changed, const std::vector<Vec3>& moving,
+             std::vector<Vec3>& velocities, const Projection::Range& then);
 
  private:
   std::vector<float> density_, least_;  // [slot + 1]; [slot], of it and its neighbours
   Floats3 velocity_;                    // [slot + 1]
   std::vector<Mat3> slope_;             // [slot], 1/s; zero where nothing is shifted
   std::vector<Vec3> shift_, carried_;   // [slot], m/s
+  std::vector<Vec3> parts_;             // [chunk], sums of carried_
 };
 }  // namespace swallowclip::bolus

@@ -47,7 +47,7 @@ struct Solver::Impl {
   void shutBranches(double t_s);
   void wrapPeriods();
   void findNeighbours();  ///< and the densities
-  void findDensities();
+  Neighbours::Range findDensities();
   bool escaped(const Vec3& p) const;
   int pushInside();
   void keepOutOfSlits(int i);
@@ -68,7 +68,7 @@ struct Solver::Impl {
   void pushExplicitly(double dt_s, Substep& report);
   void leaveInSlits(double dt_s);
   void move(double dt_s, Substep& report);
-  int clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const;
+  bool clampSpeed(double dt_s, Vec3& velocity) const;
   void coatWalls(const Substep& step);
   bool joins(int i, const Vec3& place);
   void measure(Substep& s);

@@ -87,12 +87,13 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
 }
 
 double Solver::Impl::chooseStep_s(double longest_s) {
-  double fastest = 0, wall = 0;
+  double fastest2 = 0, wall = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
     if (isGone(particles.state[i])) continue;
-    fastest = std::max(fastest, particles.velocities[i].norm());
+    fastest2 = std::max(fastest2, particles.velocities[i].squaredNorm());
     if (active[i]) wall = std::max(wall, walls[i].normalSpeed_ms);
   }
+  double fastest = std::sqrt(fastest2);
   double dt = def.longestStep_s;
   if (compressible() && neighbours.count > 0) {
     chooseSound(std::max(fastest, wall));
@@ -124,18 +125,15 @@ void Solver::Impl::chooseSound(double speed_ms) {
 }
 
 bool Solver::Impl::outruns(double dt_s, const Vec3& velocity) const {
-  return velocity.norm() > kLongestMove * def.spacing_m / dt_s;
+  const double most_ms = kLongestMove * def.spacing_m / dt_s;
+  return velocity.squaredNorm() > most_ms * most_ms;
 }
 
-// A particle must not outrun the contacts it knows.
-int Solver::Impl::clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const {
-  int clamped = 0;
-  for (Vec3& v : velocities) {
-    if (!outruns(dt_s, v)) continue;
-    v *= kLongestMove * def.spacing_m / dt_s / v.norm();
-    ++clamped;
-  }
-  return clamped;
+// A particle must not outrun the contacts it knows. Returns whether it would have.
+bool Solver::Impl::clampSpeed(double dt_s, Vec3& velocity) const {
+  if (!outruns(dt_s, velocity)) return false;
+  velocity *= kLongestMove * def.spacing_m / dt_s / velocity.norm();
+  return true;
 }
 
 // The projections of DFSPH, with gravity and viscosity before them. Velocities become free of
@@ -143,33 +141,53 @@ int Solver::Impl::clampSpeeds(double dt_s, std::vector<Vec3>& velocities) const 
 void Solver::Impl::project(double dt_s, Substep& report) {
   std::vector<Vec3>& v = particles.velocities;
   const Flow flow{neighbours, walls, pool};
+  const bool settling = settlingViscosity_Pas > 0;
+  std::fill(particles.pressure_Pa.begin(), particles.pressure_Pa.end(), 0.0);
+  Viscosity::Step viscous{flow,
+                          def.fluid,
+                          {.override_Pas = settlingViscosity_Pas, .slip = def.slip},
+                          dt_s,
+                          kernel.support_m(),
+                          v};
   projection.prepare(flow);
-  for (std::size_t i = 0; i < v.size(); ++i)
-    if (active[i]) v[i] += dt_s * def.gravity_ms2;
+  viscosity.begin(viscous);
+  shifting.begin(flow, moving);
   if (tension) tension->push(dt_s, v);
   // Friction acts on gravity and the last pressure together (incremental projection, Guermond et
   // al. 2006, sec. 3.2). On gravity alone walls would carry a share of it every step and pressure
   // only the rest: 6 % too little in a 10 mm wide column of 1 Pa.s at steps of 1 ms, half or less
   // in a squeezed gap with 12 nu dt / h^2 = 1.
-  projection.pushByLastPressure(flow, dt_s, v);
-  report.viscosityIterations =
-      viscosity
-          .apply(flow, def.fluid, {.override_Pas = settlingViscosity_Pas, .slip = def.slip}, dt_s,
-                 kernel.support_m(), v)
-          .iterations;
-  if (settlingViscosity_Pas == 0)
-    projection.brake(flow, viscosity.wallDrag());
-  else
-    projection.brake(flow, {});
-  projection.takeLastPressureBack(flow, dt_s, v);
-  report.rate = projection.divergenceFree(flow, particles.densityRatio, dt_s, v);
-  shifting.shift(flow, particles.densityRatio, def.spacing_m, v, moving);
+  flow.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) v[flow.particle(i)] += dt_s * def.gravity_ms2;
+    projection.pushByLastPressure(flow, dt_s, v, begin, end);
+    viscosity.prepare(viscous, begin, end);
+    projection.brake(flow, settling ? std::span<const double>() : viscosity.wallDrag(), begin, end);
+  });
+  report.viscosityIterations = viscosity.exchange(viscous).iterations;
+  const auto takeBack = [&](int begin, int end) {
+    projection.takeLastPressureBack(flow, dt_s, v, begin, end);
+  };
+  const bool together = viscous.constant_Pas > 0;  // no rate of shear has to be looked for between
+  flow.sweep([&](int begin, int end, int) {
+    viscosity.rub(viscous, begin, end);
+    if (together) takeBack(begin, end);
+  });
+  viscosity.end(viscous);
+  if (!together) flow.sweep([&](int begin, int end, int) { takeBack(begin, end); });
+  report.rate = projection.divergenceFree(
+      flow, particles.densityRatio, dt_s, v,
+      [&](int begin, int end) { shifting.look(flow, particles.densityRatio, v, begin, end); });
+  shifting.shift(flow, dt_s, def.spacing_m, v, moving,
+                 [&](int begin, int end) { projection.startFrom(flow, moving, begin, end); });
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
-  shifting.carry(flow, dt_s, moving, v);
-  projection.stress_m2s2(flow, particles.pressure_Pa);
-  // per volume that the particle really has
-  for (std::size_t i = 0; i < v.size(); ++i)
-    particles.pressure_Pa[i] *= def.fluid.density_kgm3 * particles.densityRatio[i];
+  const auto pressure = [&](int begin, int end) {  // per volume that the particle really has
+    for (int i = begin; i < end; ++i) {
+      const int p = flow.particle(i);
+      particles.pressure_Pa[p] = projection.stress_m2s2(flow, i) * def.fluid.density_kgm3 *
+                                 particles.densityRatio[p];
+    }
+  };
+  shifting.carry(flow, dt_s, report.density.iterations > 0, moving, v, pressure);
   if (tension) tension->addPressure_Pa(particles.densityRatio, particles.pressure_Pa);
 }
 
@@ -180,10 +198,10 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
   const Viscosity::ShearRates shear = viscosity.shearRates();
   for (const double least_s = kShortestRetry * dt_s;; dt_s /= 2) {
     project(dt_s, report);
-    const auto outrun = [&](const Vec3& v) { return outruns(dt_s, v); };
-    if (dt_s <= std::max(least_s, kShortestStep_s) ||
-        (std::ranges::none_of(particles.velocities, outrun) &&
-         std::ranges::none_of(moving, outrun)))
+    const auto outrun = [&](int i) {
+      return outruns(dt_s, particles.velocities[i]) || outruns(dt_s, moving[i]);
+    };
+    if (dt_s <= std::max(least_s, kShortestStep_s) || std::ranges::none_of(neighbours.id, outrun))
       return dt_s;
     particles.velocities = before;
     projection.rateWarm() = rate;
@@ -242,14 +260,20 @@ void Solver::Impl::leaveInSlits(double dt_s) {
 void Solver::Impl::move(double dt_s, Substep& report) {
   std::vector<Vec3>& v = particles.velocities;
   leaveInSlits(dt_s);
-  report.clamped = clampSpeeds(dt_s, v) + clampSpeeds(dt_s, moving);
   const int n = static_cast<int>(v.size());
   carried.resize(n);
-  std::vector<std::pair<double, bool>> parts((n + kMoveChunk - 1) / kMoveChunk);
+  struct Part {
+    double fastest2 = 0;
+    int clamped = 0;
+    bool broken = false;
+  };
+  std::vector<Part> parts((n + kMoveChunk - 1) / kMoveChunk);
   pool.forChunks(n, kMoveChunk, [&](int begin, int end, int chunk) {
-    auto& [fastest, broken] = parts[chunk];
+    Part& part = parts[chunk];
     for (int i = begin; i < end; ++i) {
       if (isGone(particles.state[i])) continue;
+      part.clamped += clampSpeed(dt_s, v[i]);
+      if (active[i]) part.clamped += clampSpeed(dt_s, moving[i]);
       const Vec3 wall_ms = contacts[i].empty() ? v[i] : contacts[i][0].velocity;
       carried[i] = {particles.positions[i] + dt_s * wall_ms, wall_ms};
       if (particles.state[i] == State::film) v[i] = moving[i] = filmVelocity_ms(i);
@@ -259,15 +283,16 @@ void Solver::Impl::move(double dt_s, Substep& report) {
           !moving[i].allFinite()) {  // said by checkStep; until then it must not get into the grids
         v[i].setZero();
         moving[i].setZero();
-        broken = true;
+        part.broken = true;
       }
-      fastest = std::max(fastest, v[i].norm());
+      part.fastest2 = std::max(part.fastest2, v[i].squaredNorm());
       particles.positions[i] += dt_s * moving[i];
     }
   });
-  for (const auto& [fastest, broken] : parts) {
-    report.maxSpeed_ms = std::max(report.maxSpeed_ms, fastest);
-    report.broken = report.broken || broken;
+  for (const Part& part : parts) {
+    report.maxSpeed_ms = std::max(report.maxSpeed_ms, std::sqrt(part.fastest2));
+    report.clamped += part.clamped;
+    report.broken = report.broken || part.broken;
   }
   report.rescued = meetWalls(time_s + (frozen ? 0 : dt_s));
 }

@@ -124,12 +124,12 @@ SC_CLONES void gradient(const GradientSweep& s, int begin, int end) {
       x.add(k * gx);
       y.add(k * gy);
       z.add(k * gz);
-      if (s.stress) stress += k * root(gx * gx + gy * gy + gz * gz) * load(s.r + e);
+      stress += k * root(gx * gx + gy * gy + gz * gz) * load(s.r + e);
     }
     s.out[3 * i] = sum(x);
     s.out[3 * i + 1] = sum(y);
     s.out[3 * i + 2] = sum(z);
-    if (s.stress) s.stress[i] = sum(stress) / 6;
+    s.stress[i] = sum(stress) / 6;
   }
 }
 

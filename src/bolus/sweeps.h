@@ -84,20 +84,19 @@ struct RateSweep {
 };
 
 /// out_i = sum (k_i + k_j) g_ij, summed in double from terms that are antisymmetric to the bit; and
-/// where asked, stress_i = sum (k_i + k_j) / 2 r |g_ij| / 3.
+/// stress_i = sum (k_i + k_j) / 2 r |g_ij| / 3.
 struct GradientSweep {
   PairLists pairs;
   const float *k;
   double *out;              ///< [slot][3]
-  const float *r;           ///< [pair]
-  float *stress = nullptr;  ///< null: not asked
+  const float *r;  ///< [pair]
+  float *stress;
   void run(int begin, int end) const;
 };
 
 /// A symmetric tensor per slot: xx yy zz - xy xz yz -, so that one is fetched at once.
 struct Tensors {
   std::vector<float> of;
-  static constexpr int kAt[6] = {0, 1, 2, 4, 5, 6};
   void shape(std::size_t n, std::size_t behind) {
     of.resize(8 * (n + behind));
     std::fill(of.begin() + 8 * n, of.end(), 0.f);

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/simd.h"
+
 namespace swallowclip::bolus {
 namespace {
 constexpr double kWallFactor = 2;    // Ferrand et al. 2013, eq. 38: 2 nu |grad gamma| u / distance
@@ -12,11 +14,11 @@ constexpr double kSoftening = 1e-4;  // eta^2 / (H/2)^2 against division by zero
 // The Laplacian of |x|^2 is 6, so the weights of a full neighbourhood, walls included, sum to 3:
 // what they really sum to scales them. Not below this, assumed (0.5 to 0.9): at a free surface
 // there is nothing to be completed.
-constexpr double kLeastEvenness = 0.8;
+constexpr float kLeastEvenness = 0.8f;
 // Determinant of the moment matrix below which a neighbourhood is too one-sided to be corrected,
 // assumed (0.1 to 0.5); 1 is a full one.
 constexpr double kLeastMoment = 0.3;
-constexpr double kIsotropic = 2.5;       // see evenOut
+constexpr float kIsotropic = 2.5f;       // see evenOut
 constexpr double kLeastPairShare = 0.2;  // of a pair's own weight, keeps it positive, assumed
 constexpr int kCap = 300;                // iterations, assumed (100 to 500)
 constexpr double kTolerance = 1e-4;      // residual over right side, assumed (1e-5 to 1e-3)
@@ -68,26 +70,34 @@ double shearRate_s(const Mat3& gradient) {
 // moments as of isotropic neighbours, weights changed by n.B.n have the moment (tr B + 2 B) / 5
 // times theirs: B = (1 - 5/2 deviator of M) over a third of its trace.
 void Viscosity::evenOut(const WallSample& w, const float* moment, float* even) {
-  std::array<double, 6> m;
-  for (int k = 0; k < 6; ++k) m[k] = moment[Tensors::kAt[k]];
+  using simd::F4;
+  F4 straight = simd::load4(moment), mixed = simd::load4(moment + 4);
   if (const double steep2 = w.gradLambda.squaredNorm(); steep2 > 0) {
     // beyond the wall: lambda all round and the rest along its normal (by parts)
-    const Vec3& g = w.gradLambda;
-    const double rest = 3 * (w.lambdaSlope - w.lambda) / steep2;
-    const double outer[6] = {g.x() * g.x(), g.y() * g.y(), g.z() * g.z(),
-                             g.x() * g.y(), g.x() * g.z(), g.y() * g.z()};
-    for (int k = 0; k < 6; ++k) m[k] += rest * outer[k] + (k < 3 ? w.lambda : 0);
+    const Vec3f g = w.gradLambda.cast<float>();
+    const float rest = static_cast<float>(3 * (w.lambdaSlope - w.lambda) / steep2);
+    straight += rest * F4{g.x() * g.x(), g.y() * g.y(), g.z() * g.z(), 0};
+    straight += static_cast<float>(w.lambda) * F4{1, 1, 1, 0};
+    mixed += rest * F4{g.x() * g.y(), g.x() * g.z(), g.y() * g.z(), 0};
   }
-  const double third = (m[0] + m[1] + m[2]) / 3, scale = 1 / std::max(kLeastEvenness, third);
-  for (int k = 0; k < 6; ++k)
-    even[Tensors::kAt[k]] = static_cast<float>(
-        scale * ((k < 3 ? 1 : 0) - kIsotropic * scale * (m[k] - (k < 3 ? third : 0))));
+  const float third = (straight[0] + straight[1] + straight[2]) / 3;
+  const float scale = 1 / std::max(kLeastEvenness, third);
+  const F4 one = F4{1, 1, 1, 0};
+  simd::store4(even, scale * (one - kIsotropic * scale * (straight - third * one)));
+  simd::store4(even + 4, -kIsotropic * scale * scale * mixed);
 }
 
-// All that a slot has to itself.
-void Viscosity::prepare(const Flow& f, const Fluid& fluid, double constant_Pas, bool slip,
-                        double dt, const std::vector<Vec3>& v) {
+void Viscosity::begin(Step& s) {
+  const Flow& f = s.flow;
   const int n = f.count();
+  wallDrag_.assign(s.velocities.size(), 0.0);
+  if (shearRates_.own_s.size() != s.velocities.size()) shearRates_.forget(s.velocities.size());
+  drag_ms2_.resize(s.velocities.size(), Vec3::Zero());
+  if (s.scheme.override_Pas > 0)
+    s.constant_Pas = s.scheme.override_Pas;
+  else if (s.fluid.model == RheologyModel::newtonian)
+    s.constant_Pas = s.fluid.viscosity_Pas;
+  if (s.constant_Pas == 0) findRates(f, s.velocities);
   for (auto* a : {&viscosity_, &inertia_}) a->resize(n);
   force_.resize(3 * n);
   right_.resize(n);
@@ -98,48 +108,51 @@ void Viscosity::prepare(const Flow& f, const Fluid& fluid, double constant_Pas, 
   }
   evenness_.shape(n, 1);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
+}
+
+// All that a slot has to itself.
+void Viscosity::prepare(const Step& s, int begin, int end) {
   const auto viscosityAt = [&](double rate_s) {
-    return constant_Pas > 0 ? constant_Pas : apparentViscosity_Pas(fluid, rate_s);
+    return s.constant_Pas > 0 ? s.constant_Pas : apparentViscosity_Pas(s.fluid, rate_s);
   };
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      const int p = f.particle(i);
-      const WallSample& w = f.walls[p];
-      viscosity_[i] = viscosityAt(shearRates_.own_s[p]);
-      mu_[i] = static_cast<float>(viscosity_[i]);
-      evenOut(w, f.neighbours.moment[i], evenness_[i]);
-      inertia_[i] = slip ? 1 : 1 - std::min(w.lambda, kMostLambda);
-      right_[i] = v[p];
-      if (w.friction > 0) {
-        // Across a slit with no room for a second particle the profile is not resolved: there the
-        // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
-        const double slit = viscosity_[i] * 12 / (w.gap_m * w.gap_m);
-        const double shear =
-            viscosityAt(shearRates_.wall_s[p]) * kWallFactor * w.friction / inertia_[i];
-        wallDrag_[p] = dt / fluid.density_kgm3 * std::max(shear, slit);
-        right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
-      }
-      own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));
-      v_.set(i, right_[i] / (1 + wallDrag_[p]));
-      right_[i] *= inertia_[i];
+  for (int i = begin; i < end; ++i) {
+    const int p = s.flow.particle(i);
+    const WallSample& w = s.flow.walls[p];
+    viscosity_[i] = viscosityAt(shearRates_.own_s[p]);
+    mu_[i] = static_cast<float>(viscosity_[i]);
+    evenOut(w, s.flow.neighbours.moment[i], evenness_[i]);
+    inertia_[i] = s.scheme.slip ? 1 : 1 - std::min(w.lambda, kMostLambda);
+    right_[i] = s.velocities[p];
+    if (w.friction > 0) {
+      // Across a slit with no room for a second particle the profile is not resolved: there the
+      // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
+      const double slit = viscosity_[i] * 12 / (w.gap_m * w.gap_m);
+      const double shear =
+          viscosityAt(shearRates_.wall_s[p]) * kWallFactor * w.friction / inertia_[i];
+      wallDrag_[p] = s.dt_s / s.fluid.density_kgm3 * std::max(shear, slit);
+      right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
     }
-  });
+    own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));
+    v_.set(i, right_[i] / (1 + wallDrag_[p]));
+    right_[i] *= inertia_[i];
+  }
 }
 
 // Weights of pairs, and their sums in inverse_.
-float Viscosity::weighPairs(const Flow& f, double density, double leastPair, double dt,
-                            double support) {
+float Viscosity::weighPairs(const Step& s) {
+  const Flow& f = s.flow;
   pair_.resize(f.neighbours.index.size());
-  const PairViscositySweep sweep{f.lists(),
-                                 f.neighbours.r.data(),
-                                 mu_.data(),
-                                 evenness_.of.data(),
-                                 static_cast<float>(dt / density),  // 2, and half of two evennesses
-                                 static_cast<float>(leastPair),
-                                 static_cast<float>(kSoftening * support * support / 4),
-                                 static_cast<float>(kLeastPairShare),
-                                 pair_.data(),
-                                 inverse_.data()};
+  const PairViscositySweep sweep{
+      f.lists(),
+      f.neighbours.r.data(),
+      mu_.data(),
+      evenness_.of.data(),
+      static_cast<float>(s.dt_s / s.fluid.density_kgm3),  // 2, and half of two evennesses
+      static_cast<float>(s.scheme.leastPair_Pas),
+      static_cast<float>(kSoftening * s.support_m * s.support_m / 4),
+      static_cast<float>(kLeastPairShare),
+      pair_.data(),
+      inverse_.data()};
   std::vector<float> most((f.count() + kSweepChunk - 1) / kSweepChunk);
   f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
@@ -149,7 +162,8 @@ float Viscosity::weighPairs(const Flow& f, double density, double leastPair, dou
 }
 
 // Conjugate gradients, preconditioned by the diagonal, all three components at once.
-Viscosity::Report Viscosity::solve(const Flow& f, double dt_s, const std::vector<Vec3>& v) {
+Viscosity::Report Viscosity::solve(const Step& s) {
+  const Flow& f = s.flow;
   const int n = f.count();
   const auto sweep = [&](const Floats3& of) {
     return ViscositySweep{f.lists(), pair_.data(), own_.data(), of.data(), product_.data()};
@@ -178,7 +192,7 @@ Viscosity::Report Viscosity::solve(const Flow& f, double dt_s, const std::vector
   f.sweep([&](int b, int e, int) {
     for (int i = b; i < e; ++i) {
       const int p = f.particle(i);
-      v_.set(i, v[p] + dt_s * drag_ms2_[p]);
+      v_.set(i, s.velocities[p] + s.dt_s * drag_ms2_[p]);
       inverse_[i] = 1 / (own_[i] + inverse_[i]);
     }
   });
@@ -229,12 +243,11 @@ Viscosity::Report Viscosity::solve(const Flow& f, double dt_s, const std::vector
   return report;
 }
 
-bool Viscosity::isStableExplicitly(const Scheme& scheme, double density, double dt,
-                                   double support) const {
-  if (!scheme.explicitWhereStable) return false;
-  double most = scheme.leastPair_Pas;
+bool Viscosity::isStableExplicitly(const Step& s) const {
+  if (!s.scheme.explicitWhereStable) return false;
+  double most = s.scheme.leastPair_Pas;
   for (double mu : viscosity_) most = std::max(most, mu);
-  return dt * most / density <= kExplicitShare * support * support / 4;
+  return s.dt_s * most / s.fluid.density_kgm3 <= kExplicitShare * s.support_m * s.support_m / 4;
 }
 
 void Viscosity::ShearRates::forget(std::size_t particles) {
@@ -260,38 +273,39 @@ void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
   });
 }
 
+Viscosity::Report Viscosity::exchange(const Step& s) {
+  if (weighPairs(s) < kLittleExchange || isStableExplicitly(s)) return {};
+  return solve(s);
+}
+
+// The solution enters only through the antisymmetric pair terms, so that momentum is kept to double
+// precision however far the solve went.
+void Viscosity::rub(const Step& s, int begin, int end) {
+  const DragSweep drag{s.flow.lists(), pair_.data(), v_.data(), force_.data()};
+  drag.run(begin, end);
+  for (int i = begin; i < end; ++i) {
+    const int p = s.flow.particle(i);
+    const Vec3 next = (right_[i] - Vec3(&force_[3 * i])) / (inertia_[i] * (1 + wallDrag_[p]));
+    drag_ms2_[p] = (next - s.velocities[p]) / s.dt_s;
+    s.velocities[p] = next;
+  }
+}
+
+// The next step's viscosities follow from this field, before pressure has its say: what it does to
+// single particles is noise, which would thin a fluid that ought to be stiff.
+void Viscosity::end(const Step& s) {
+  shearRates_.forget(s.velocities.size());
+  if (s.constant_Pas == 0) findRates(s.flow, s.velocities);
+}
+
 Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Scheme& scheme,
                                    double dt_s, double support_m, std::vector<Vec3>& v) {
-  wallDrag_.assign(v.size(), 0.0);
-  if (shearRates_.own_s.size() != v.size()) shearRates_.forget(v.size());
-  drag_ms2_.resize(v.size(), Vec3::Zero());
-  const bool constant = scheme.override_Pas > 0 || fluid.model == RheologyModel::newtonian;
-  const double constant_Pas = scheme.override_Pas > 0 ? scheme.override_Pas
-                              : constant              ? fluid.viscosity_Pas
-                                                      : 0;
-  if (!constant) findRates(f, v);
-  prepare(f, fluid, constant_Pas, scheme.slip, dt_s, v);
-  const float exchanged = weighPairs(f, fluid.density_kgm3, scheme.leastPair_Pas, dt_s, support_m);
-  Report report;
-  if (exchanged >= kLittleExchange &&
-      !isStableExplicitly(scheme, fluid.density_kgm3, dt_s, support_m))
-    report = solve(f, dt_s, v);
-  // The solution enters only through the antisymmetric pair terms, so that momentum is kept to
-  // double precision however far the solve went.
-  const DragSweep drag{f.lists(), pair_.data(), v_.data(), force_.data()};
-  f.sweep([&](int begin, int end, int) {
-    drag.run(begin, end);
-    for (int i = begin; i < end; ++i) {
-      const int p = f.particle(i);
-      const Vec3 next = (right_[i] - Vec3(&force_[3 * i])) / (inertia_[i] * (1 + wallDrag_[p]));
-      drag_ms2_[p] = (next - v[p]) / dt_s;
-      v[p] = next;
-    }
-  });
-  // The next step's viscosities follow from this field, before pressure has its say: what it does
-  // to single particles is noise, which would thin a fluid that ought to be stiff.
-  shearRates_.forget(v.size());
-  if (!constant) findRates(f, v);
+  Step step{f, fluid, scheme, dt_s, support_m, v};
+  begin(step);
+  f.sweep([&](int begin, int end, int) { prepare(step, begin, end); });
+  const Report report = exchange(step);
+  f.sweep([&](int begin, int end, int) { rub(step, begin, end); });
+  end(step);
   return report;
 }
 }  // namespace swallowclip::bolus

@@ -37,6 +37,22 @@ class Viscosity {
   Report apply(const Flow& flow, const Fluid& fluid, const Scheme& scheme, double dt_s,
                double support_m, std::vector<Vec3>& velocities);
 
+  /// The same in parts, for who has other work for the same slots: `begin`, `prepare` all slots,
+  /// `exchange`, `rub` all slots, `end`.
+  struct Step {
+    const Flow& flow;
+    const Fluid& fluid;
+    Scheme scheme;
+    double dt_s, support_m;
+    std::vector<Vec3>& velocities;
+    double constant_Pas = 0;  ///< 0: by the shear rate; `begin` finds it
+  };
+  void begin(Step& step);
+  void prepare(const Step& step, int begin, int end);
+  Report exchange(const Step& step);
+  void rub(const Step& step, int begin, int end);
+  void end(const Step& step);
+
   /// Before a new run.
   void forget() { *this = {}; }
 
@@ -55,16 +71,12 @@ class Viscosity {
   std::vector<Vec3>& drags_ms2() { return drag_ms2_; }
 
  private:
-  void prepare(const Flow& flow, const Fluid& fluid, double constant_Pas, bool slip, double dt_s,
-               const std::vector<Vec3>& velocities);
   /// Largest sum of a slot's weights.
-  float weighPairs(const Flow& flow, double density_kgm3, double leastPair_Pas, double dt_s,
-                   double support_m);
+  float weighPairs(const Step& step);
   void findRates(const Flow& flow, const std::vector<Vec3>& velocities);
   static void evenOut(const WallSample& wall, const float* moment, float* even);
-  bool isStableExplicitly(const Scheme& scheme, double density_kgm3, double dt_s,
-                          double support_m) const;
-  Report solve(const Flow& flow, double dt_s, const std::vector<Vec3>& velocities);
+  bool isStableExplicitly(const Step& step) const;
+  Report solve(const Step& step);
 
   ShearRates shearRates_;
   std::vector<Vec3> drag_ms2_;               // [particle]

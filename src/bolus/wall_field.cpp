@@ -9,6 +9,9 @@ namespace {
 // Quadrature points by a piece's longest edge in spacings: the same relative error at every
 // resolution (wall_field_test). Longer triangles are cut.
 constexpr double kOnePoint = 0.35, kThreePoints = 1.5, kLongestEdge = 2;
+// Cells of the grid as a share of how far the centroid of a piece within reach can be, assumed (0.3
+// to 1): smaller ones hold less that is out of reach, in more rows.
+constexpr double kCell = 1;
 constexpr int kMaxCuts = 6;              // a triangle becomes at most 4^6 pieces
 constexpr double kEmptyArea_m2 = 1e-16;  // slivers without a usable normal
 // Nearer than this the wall shear no longer grows: 0.3 spacings, assumed (0.2 to 0.5), the order
@@ -172,7 +175,7 @@ void WallField::rebuild(std::span<const Triangle> triangles, std::span<const Vec
     addPiece(makePiece(a, b, c, v[t[0]], v[t[1]], v[t[2]], k), 0);
   }
   low_ = built_.low;
-  grid_.build(centroids_, {}, table_->support_m() + largestRadius_m_);
+  grid_.build(centroids_, {}, kCell * (table_->support_m() + largestRadius_m_));
   sortPieces();
 }
 
@@ -227,7 +230,7 @@ WallSample WallField::sample(const Vec3& p) const {
   WallSums sums;
   thread_local NearPieces near;
   near.clear();
-  grid_.rowsAround(p, [&](int first, int last) {
+  grid_.rowsAround(p, table_->support_m() + largestRadius_m_, [&](int first, int last) {
     quadrature.look(at.x(), at.y(), at.z(), first, last, near, sums);
   });
   out.clear_m = table_->support_m();
@@ -252,6 +255,7 @@ void WallField::contacts(const Vec3& p, double radius_m, std::vector<Contact>& o
     double d2;
     int piece;
     Vec3 bary, point;
+    bool nearer(const Hit& o) const { return d2 != o.d2 ? d2 < o.d2 : piece < o.piece; }
   };
   thread_local std::vector<Hit> hits;
   hits.clear();
@@ -260,7 +264,7 @@ void WallField::contacts(const Vec3& p, double radius_m, std::vector<Contact>& o
   const Vec3f at = (p - low_).cast<float>();
   thread_local std::vector<int> near;
   std::size_t count = 0;
-  grid_.rowsAround(p, [&](int first, int last) {
+  grid_.rowsAround(p, reach + largestRadius_m_, [&](int first, int last) {
     near.resize(std::max(near.size(), count + last - first + 8));
     count += nearPieces(arrays_, at.x(), at.y(), at.z(), reach,
                         static_cast<float>(table_->support_m()), first, last, &near[count]);
@@ -274,41 +278,42 @@ void WallField::contacts(const Vec3& p, double radius_m, std::vector<Contact>& o
     if (d2 < radius_m * radius_m) hits.push_back({d2, k, bary, q});
   }
   if (hits.empty()) return;
-  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
-    return a.d2 != b.d2 ? a.d2 < b.d2 : a.piece < b.piece;
-  });
+  const auto nearest = [](auto begin, auto end) {
+    return *std::min_element(begin, end, [](const Hit& a, const Hit& b) { return a.nearer(b); });
+  };
+  Hit h = nearest(hits.begin(), hits.end());
   // Which side: the angle-weighted normal of all pieces that share the nearest point (Baerentzen &
   // Aanaes 2005), right at edges and corners too.
   Vec3 normal = Vec3::Zero();
   const double same = 1e-6 * spacing_m_;
-  for (const Hit& h : hits) {
-    if ((h.point - hits[0].point).squaredNorm() > same * same) continue;
-    const Piece& t = pieces_[h.piece];
+  for (const Hit& o : hits) {
+    if ((o.point - h.point).squaredNorm() > same * same) continue;
+    const Piece& t = pieces_[o.piece];
     double weight = 1;
-    if (h.bary[0] == 1) weight = cornerAngle(t.a, t.b, t.c);
-    if (h.bary[1] == 1) weight = cornerAngle(t.b, t.c, t.a);
-    if (h.bary[2] == 1) weight = cornerAngle(t.c, t.a, t.b);
+    if (o.bary[0] == 1) weight = cornerAngle(t.a, t.b, t.c);
+    if (o.bary[1] == 1) weight = cornerAngle(t.b, t.c, t.a);
+    if (o.bary[2] == 1) weight = cornerAngle(t.c, t.a, t.b);
     normal += weight * t.normal;
   }
-  const double side = (p - hits[0].point).dot(normal) > 0 ? -1 : 1;
-  for (const Hit& h : hits) {
+  const double side = (p - h.point).dot(normal) > 0 ? -1 : 1;
+  const double first_m = std::sqrt(h.d2);
+  Vec3 inward = first_m > same ? Vec3(side * (p - h.point) / first_m) : Vec3(-normal.normalized());
+  for (double distance_m = side * first_m;;) {
     const Piece& t = pieces_[h.piece];
-    const bool first = out.empty();
-    const double d = std::sqrt(h.d2);
-    Vec3 inward = -normal.normalized();
-    if (d > same)
-      inward = (first ? side : 1.0) * (p - h.point) / d;
-    else if (!first)
-      continue;
-    if (!first) {
-      if (inward.dot(t.normal) > 1e-9) continue;  // seen from behind: other tissue in between
-      bool known = false;
-      for (const Contact& c : out) known = known || c.inward.dot(inward) > kSameDirection;
-      if (known) continue;
-    }
     out.push_back({h.point, inward, t.va * h.bary[0] + t.vb * h.bary[1] + t.vc * h.bary[2],
-                   first ? side * d : d, t.triangle});
+                   distance_m, t.triangle});
     if (side < 0 || static_cast<int>(out.size()) == kMaxContacts) return;
+    // Of the others none that lies the same way, nor one seen from behind: other tissue in between.
+    std::erase_if(hits, [&](const Hit& o) {
+      const double d = std::sqrt(o.d2);
+      if (!(d > same)) return true;
+      const Vec3 way = (p - o.point) / d;
+      return way.dot(pieces_[o.piece].normal) > 1e-9 || way.dot(inward) > kSameDirection;
+    });
+    if (hits.empty()) return;
+    h = nearest(hits.begin(), hits.end());
+    distance_m = std::sqrt(h.d2);
+    inward = (p - h.point) / distance_m;
   }
 }
 }  // namespace swallowclip::bolus

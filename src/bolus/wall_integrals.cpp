@@ -85,7 +85,7 @@ SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, in
   const F8 ox = all(px), oy = all(py), oz = all(pz), zero = all(0);
   F8 speed = zero, nearest2 = all(sums.nearest2);
   I8 nearest = allInt(sums.nearest);
-  const float few2 = kFewPoints * kFewPoints * support * support;
+  const float support2 = support * support, few2 = kFewPoints * kFewPoints * support2;
   int found = 0;
   for (int k = begin; k < end; k += kLanes) {
     const F8 cx = load(p.at(P::kCx) + k) - ox, cy = load(p.at(P::kCy) + k) - oy,
@@ -97,10 +97,16 @@ SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, in
     nearest2 = select(nearer, away2, nearest2);
     nearest = nearer ? kCount + allInt(k) : nearest;
     speed = largest(speed, select(near, load(p.at(P::kSpeed) + k), zero));
+    // of its plane the kernel reaches a disc, if anything
+    const F8 offset =
+        cx * load(p.at(P::kNx) + k) + cy * load(p.at(P::kNy) + k) + cz * load(p.at(P::kNz) + k);
+    const F8 disc2 = all(support2) - offset * offset;
+    const F8 along = root(largest(disc2, zero)) + (reach - all(support));
+    const I8 reached = near & (disc2 > zero) & (away2 - offset * offset < along * along);
     const I8 rule = loadInt(p.rule.data() + k);
     const I8 few = (away2 > all(few2)) & (rule > allInt(1));
-    putValues(near, rule + few, rules + found);  // true is -1
-    found += putLanes(near, k, out + found);
+    putValues(reached, rule + few, rules + found);  // true is -1
+    found += putLanes(reached, k, out + found);
   }
   for (int lane = 0; lane < kLanes; ++lane) {
     sums.normalSpeed = std::max(sums.normalSpeed, static_cast<float>(speed[lane]));
@@ -151,6 +157,7 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
       }
       const F8 singular = select(close, zero, all(1 / (4 * kPif)));
       F8 inside = zero, shear = zero, solid = zero;  // of W, W / distance, r-hat . n over the piece
+      const F8 perOffset = all(1) / largest(offset, all(q.leastShear_m));
       for (int g = 0; g < kRules[rule].count; ++g) {
         const Point& point = kRules[rule].points[g];
         const F8 u = all(point.a), t = all(point.b), w = all(point.c);
@@ -183,8 +190,9 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
         const F8 weight = all(point.weight), share = weight * value;
         solid += weight * (singular * inverse * inverse * inverse - f);
         inside += share;
-        // 0.25 r: pieces seen edge-on have no shear distance of their own
-        shear += share / largest(largest(offset, all(0.25f) * r), all(q.leastShear_m));
+        // by the distance of the plane or a quarter of r, whichever is more: pieces seen edge-on
+        // have no shear distance of their own
+        shear += share * smallest(perOffset, all(4) * inverse);
       }
       lambda += pieceArea * offset * solid;
       inside *= pieceArea;
