@@ -212,6 +212,9 @@ void WallField::sortPieces() {
     const double edge = std::max({(t.b - t.a).norm(), (t.c - t.b).norm(), (t.a - t.c).norm()});
     arrays_.rule[k] = edge < kOnePoint * spacing_m_ ? 0 : edge < kThreePoints * spacing_m_ ? 1 : 2;
     arrays_.field[P::kSpeed][k] = static_cast<float>(t.normalSpeed);
+    arrays_.field[P::kClose2][k] =
+        P::close2(arrays_.rule[k], static_cast<float>(t.radius), static_cast<float>(spacing_m_),
+                  static_cast<float>(table_->support_m()));
   }
 }
 

@@ -52,7 +52,16 @@ constexpr float kFarSpacings[] = {1, 1, 0};
 // grad lambda within 3e-4 over a spacing instead of 1.2e-4 (triangles of 1.9 spacings).
 constexpr float kFewPoints = 1.05f;
 constexpr float kPif = static_cast<float>(kPi);
+}  // namespace
 
+float PieceArrays::close2(int rule, float radius_m, float spacing_m, float support_m) {
+  const float away =
+      std::max(kFarRadii[rule] * radius_m, kFarSpacings[rule] * spacing_m);
+  const float close = std::min(away, kFewPoints * support_m);
+  return close * close;
+}
+
+namespace {
 // atan2 to 2e-7: octant reduction, then an odd polynomial (coefficients of Cephes' atanf, Moshier).
 SC_INLINE F8 arcTangent(F8 y, F8 x) {
   const F8 ax = magnitude(x), ay = magnitude(y);
@@ -80,7 +89,7 @@ SC_INLINE F8 dot(const V& a, const V& b) {
 }
 
 SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, int begin, int end,
-                          float support, int* out, int* rules, WallSums& sums) {
+                          float support, int* out, int* lists, WallSums& sums) {
   using P = PieceArrays;
   const F8 ox = all(px), oy = all(py), oz = all(pz), zero = all(0);
   F8 speed = zero, nearest2 = all(sums.nearest2);
@@ -105,7 +114,8 @@ SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, in
     const I8 reached = near & (disc2 > zero) & (away2 - offset * offset < along * along);
     const I8 rule = loadInt(p.rule.data() + k);
     const I8 few = (away2 > all(few2)) & (rule > allInt(1));
-    putValues(reached, rule + few, rules + found);  // true is -1
+    const I8 close = away2 < load(p.at(P::kClose2) + k);
+    putValues(reached, rule + few - allInt(NearPieces::kRules) * close, lists + found);  // true: -1
     found += putLanes(reached, k, out + found);
   }
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -125,11 +135,12 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
   F8 lambda = zero, shape = zero, flux = zero, friction = zero, area = zero;
   V grad{zero, zero, zero}, drag{zero, zero, zero};
   F8 clear = all(sums.clear_m);
-  const F8 few2 = all(kFewPoints * kFewPoints * q.support_m * q.support_m);
   const F8 halfSupport = all(q.support_m / 2);
-  for (int rule = 0; rule < 3; ++rule)
-    for (int k = 0; k < pieces.count[rule]; k += kLanes) {
-      const int* at = &pieces.of[rule][k];
+  for (int list = 0; list < NearPieces::kLists; ++list)
+    for (int k = 0; k < pieces.count[list]; k += kLanes) {
+      const bool close = list >= NearPieces::kRules;
+      const Rule& rule = kRules[list % NearPieces::kRules];
+      const int* at = &pieces.of[list][k];
       F8 first[8], second[8];
       gather8<P::kRecord>(p.records.data(), at, first);
       gather8<P::kRecord>(p.records.data() + 8, at, second);
@@ -142,24 +153,21 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
                      (a.z + b.z + c.z) * third};
       const F8 offset = dot(a, n);  // r . n, the same all over the piece
       const F8 radius = gather(p.at(P::kReach), at) - all(q.support_m);
-      const F8 away2 = dot(centre, centre), far = all(kFarRadii[rule]) * radius;
-      const F8 least = all(kFarSpacings[rule] * q.spacing_m);
-      const I8 close = away2 < smallest(few2, largest(far * far, least * least));
       // a piece is no nearer than its plane, nor than its centroid less its radius
-      clear = smallest(clear, largest(magnitude(offset), root(away2) - radius));
-      if (any(close)) {
+      clear = smallest(clear, largest(magnitude(offset), root(dot(centre, centre)) - radius));
+      if (close) {
         // solid angle (van Oosterom & Strackee 1983), positive from the inner side: twice the area
         // times the distance of the plane is the triple product, without cancellation
         const F8 la = root(dot(a, a)), lb = root(dot(b, b)), lc = root(dot(c, c));
         const F8 triple = all(2) * pieceArea * offset;
         const F8 below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-        lambda += select(close, all(1 / (2 * kPif)) * arcTangent(triple, below), zero);
+        lambda += all(1 / (2 * kPif)) * arcTangent(triple, below);
       }
-      const F8 singular = select(close, zero, all(1 / (4 * kPif)));
+      const F8 singular = all(close ? 0 : 1 / (4 * kPif));
       F8 inside = zero, shear = zero, solid = zero;  // of W, W / distance, r-hat . n over the piece
       const F8 perOffset = all(1) / largest(offset, all(q.leastShear_m));
-      for (int g = 0; g < kRules[rule].count; ++g) {
-        const Point& point = kRules[rule].points[g];
+      for (int g = 0; g < rule.count; ++g) {
+        const Point& point = rule.points[g];
         const F8 u = all(point.a), t = all(point.b), w = all(point.c);
         const V x{u * a.x + t * b.x + w * c.x, u * a.y + t * b.y + w * c.y,
                   u * a.z + t * b.z + w * c.z};
@@ -243,23 +251,23 @@ SC_CLONES int candidates(const PieceArrays& p, float px, float py, float pz, flo
 
 void WallQuadrature::look(float x, float y, float z, int begin, int end, NearPieces& near,
                           WallSums& sums) const {
-  for (auto* list : {&near.all, &near.rules})
+  for (auto* list : {&near.all, &near.lists})
     list->resize(std::max<std::size_t>(list->size(), end - begin + kLanes));
   const int found = lookThrough(*pieces, x, y, z, begin, end, support_m, near.all.data(),
-                                near.rules.data(), sums);
+                                near.lists.data(), sums);
   for (auto& list : near.of)
     list.resize(std::max<std::size_t>(list.size(), near.total + found + kLanes));
   near.total += found;
   for (int k = 0; k < found; ++k) {
-    const int rule = near.rules[k];
-    near.of[rule][near.count[rule]++] = near.all[k];
+    const int list = near.lists[k];
+    near.of[list][near.count[list]++] = near.all[k];
   }
 }
 
 void WallQuadrature::integrate(float x, float y, float z, NearPieces& near, WallSums& sums) const {
-  for (int rule = 0; rule < 3; ++rule)
-    if (near.count[rule] > 0)
-      std::fill_n(&near.of[rule][near.count[rule]], kLanes - 1, pieces->count);  // no piece
+  for (int list = 0; list < NearPieces::kLists; ++list)
+    if (near.count[list] > 0)
+      std::fill_n(&near.of[list][near.count[list]], kLanes - 1, pieces->count);  // no piece
   integrateAll(*this, x, y, z, near, sums);
 }
 

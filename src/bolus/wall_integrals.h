@@ -19,7 +19,8 @@ struct PieceArrays {
     kNx,
     kNy,
     kNz,
-    kSpeed,  // fastest along its normal
+    kSpeed,   // fastest along its normal
+    kClose2,  // nearer than this (by the square) its solid angle is taken exactly
     kFields
   };
   static constexpr int kRecord = 16;  ///< corners a, b, c, normal, velocity (3 each), area
@@ -28,6 +29,8 @@ struct PieceArrays {
   std::vector<float> records;
   int count = 0;
   void resize(int pieces);
+  /// Where a piece of this rule and radius counts as close.
+  static float close2(int rule, float radius_m, float spacing_m, float support_m);
   const float* at(Field f) const { return field[f].data(); }
   float* record(int piece) { return &records[static_cast<std::size_t>(kRecord) * piece]; }
 };
@@ -41,12 +44,13 @@ struct WallSums {
   int nearest = -1;                         ///< piece with the nearest centroid
 };
 
-/// Pieces within reach of a particle, by their rule.
+/// Pieces within reach of a particle, by their rule; those that are close come behind the others.
 struct NearPieces {
-  std::array<std::vector<int>, 3> of;
-  std::array<int, 3> count{};
+  static constexpr int kRules = 3, kLists = 2 * kRules;
+  std::array<std::vector<int>, kLists> of;
+  std::array<int, kLists> count{};
   int total = 0;
-  std::vector<int> all, rules;  // of one row
+  std::vector<int> all, lists;  // of one row
   void clear() { count = {}, total = 0; }
 };
 

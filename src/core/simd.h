@@ -103,13 +103,10 @@ SC_INLINE F8 smallest(F8 a, F8 b) {
 SC_INLINE F8 magnitude(F8 a) {
   return a < 0 ? -a : a;
 }
-SC_INLINE F8 root(F8 a) {
-  __m128 half[2];
-  std::memcpy(half, &a, sizeof a);
-  half[0] = _mm_sqrt_ps(half[0]);
-  half[1] = _mm_sqrt_ps(half[1]);
-  std::memcpy(&a, half, sizeof a);
-  return a;
+SC_INLINE F8 root(F8 a) {  // halves put together in a register: through memory they would wait
+  const F4 low = _mm_sqrt_ps(__builtin_shufflevector(a, a, 0, 1, 2, 3));
+  const F4 high = _mm_sqrt_ps(__builtin_shufflevector(a, a, 4, 5, 6, 7));
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 /// Always in this order: ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
 SC_INLINE float sum(F8 a) {
