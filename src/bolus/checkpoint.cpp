@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000005;  // "SWBC", layout 5
+constexpr std::uint64_t kMark = 0x53574243'00000006;  // "SWBC", layout 6
 
 class Writer {
  public:
@@ -82,6 +82,7 @@ void all(Archive& a, Impl& s) {
   a(p.state);
   a(p.s_m);
   a(p.branch);
+  a(s.number);
   a(s.active);
   a(s.walls);
   a(s.contacts);
@@ -189,6 +190,7 @@ Result<void> Solver::restore(std::string_view bytes) {
   s.lastNearest.assign(s.active.size(), -1);
   s.gap_m.resize(n);
   for (std::size_t i = 0; i < n; ++i) s.gap_m[i] = localGap_m(s.contacts[i]);
+  s.outside = {};
   s.findNeighbours();
   return {};
 }

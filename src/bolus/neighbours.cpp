@@ -157,6 +157,11 @@ void Neighbours::around(const Vec3& p, std::vector<Near>& out) const {
     }
 }
 
+void Neighbours::renumber() {
+  for (int k = 0; k < static_cast<int>(slot.size()); ++k) slot[k] = k < count ? k : -1;
+  for (int k = 0; k < count; ++k) id[k] = k;
+}
+
 namespace {
 /// Sorted points that one cell's own look at, as flat arrays of whole vectors.
 struct Block {

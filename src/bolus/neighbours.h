@@ -82,6 +82,9 @@ struct Neighbours {
               const KernelTable& kernel, double volume_m3, ThreadPool& pool,
               const Range& then = {});
 
+  /// The particles have got new numbers: those of their slots, and who has none the others.
+  void renumber();
+
   PairLists lists() const {
     return {start.data(), stop.data(), index.data(), gx.data(), gy.data(), gz.data()};
   }

@@ -147,6 +147,7 @@ Result<RelaxReport> Solver::relax(double t_s, double longest_s) {
   for (Impl::Held& h : s.held) h.time_s = -INFINITY;  // of walls that stood still
   std::fill(s.particles.velocities.begin(), s.particles.velocities.end(), Vec3::Zero());
   s.meetWalls(t_s);
+  s.outside = {};
   s.finishFrame();
   if (!ok) return std::unexpected(ok.error());
   if (s.escapedNow > 0)
@@ -216,6 +217,8 @@ void Solver::Impl::finishFrame() {
 Result<StepReport> Solver::advanceTo(double t_s) {
   Impl& s = *impl_;
   StepReport report;
+  s.outside = {};
+  s.stepsUnsorted = 0;
   std::vector<double>& pressure = s.particles.pressure_Pa;
   std::vector<double> sum(pressure.size(), 0.0);
   double length_s = 0;
@@ -244,6 +247,7 @@ Result<StepReport> Solver::advanceTo(double t_s) {
       all.shareAboveTenPercent = s.aboveTenCount / s.errorCount;
     }
     if (auto ok = s.checkStep(step, dt); !ok) return std::unexpected(ok.error());
+    s.sortParticles(sum);
   }
   // Every projection takes back what the one before left of compression: single pressures flicker.
   for (std::size_t i = 0; !s.compressible() && length_s > 0 && i < sum.size(); ++i)
@@ -256,7 +260,7 @@ double Solver::time_s() const {
   return impl_->time_s;
 }
 const Particles& Solver::particles() const {
-  return impl_->particles;
+  return impl_->asNumbered();
 }
 const Stats& Solver::stats() const {
   return impl_->stats;
@@ -301,7 +305,7 @@ Ledger Solver::ledger() const {
 }
 
 std::uint64_t Solver::digest() const {
-  const Particles& p = impl_->particles;
+  const Particles& p = particles();
   std::uint64_t d = stateDigest(p.positions.data(), p.positions.size() * sizeof(Vec3));
   d = stateDigest(p.velocities.data(), p.velocities.size() * sizeof(Vec3), d);
   return stateDigest(p.state.data(), p.state.size(), d);

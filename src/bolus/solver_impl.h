@@ -46,6 +46,8 @@ struct Solver::Impl {
   void evaluateWalls(double t_s);
   void shutBranches(double t_s);
   void wrapPeriods();
+  void sortParticles(std::vector<double>& more);  ///< `more`: a caller's own array of them
+  const Particles& asNumbered();
   void findNeighbours();  ///< and the densities
   Neighbours::Range findDensities();
   bool escaped(const Vec3& p) const;
@@ -83,6 +85,9 @@ struct Solver::Impl {
   double volume_m3;  // in kernel sums: a lattice at rest has density one with every kernel
 
   Particles particles;
+  std::vector<int> number;  // [particle] the first one that it had; empty: none was renumbered
+  int stepsUnsorted = 0;
+  Particles outside;  // by first numbers; empty: not looked at since the last step
   std::vector<Vec3> wallPositions, wallVelocities;
   std::vector<std::vector<Contact>> contacts;
   std::vector<double> gap_m;  // localGap_m of them

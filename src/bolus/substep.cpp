@@ -57,6 +57,8 @@ Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
 
 void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3> velocities) {
   const std::size_t n = places.size();
+  number.clear();
+  outside = {};
   particles.positions = std::move(places);
   particles.velocities = std::move(velocities);
   particles.velocities.resize(n, Vec3::Zero());
