@@ -295,10 +295,12 @@ void Solver::Impl::findNeighbours() {
 }
 
 Neighbours::Range Solver::Impl::findDensities() {
+  beside.resize(active.size());
   return [this](int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const int i = neighbours.id[s];
       particles.densityRatio[i] = neighbours.sumW[s] + walls[i].lambda;
+      beside[s] = walls[i].nearestTriangle >= 0;
     }
   };
 }

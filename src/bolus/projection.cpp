@@ -70,7 +70,7 @@ void Projection::prepare(const Flow& f) {
     if (nb.slot[p] < 0) densityK_[p] = rateK_[p] = 0;
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
-      const WallSample& w = f.walls[f.particle(i)];
+      const WallSample& w = f.wall(i);
       const Vec3f g = kWallMirror * w.gradLambda.cast<float>();
       std::copy_n(g.data(), 3, wall_[i]);
       along_[i] = across_[i] = 0;
@@ -138,7 +138,7 @@ void Projection::findSource(const Flow& f, const std::vector<Vec3>& v, bool push
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
       const float rate = source_[i] + static_cast<float>(v[p].dot(wall_.at(i).cast<double>()) -
-                                                         kWallMirror * f.walls[p].flux_s);
+                                                         kWallMirror * f.wall(i).flux_s);
       source_[i] = static_cast<float>(source(i, static_cast<double>(rate)));
       asked.add(source_[i], full);
     }

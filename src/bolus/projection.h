@@ -30,6 +30,7 @@ inline constexpr int kSweepAlone = 200;
 struct Flow {
   const Neighbours& neighbours;
   const std::vector<WallSample>& walls;
+  const std::vector<std::uint8_t>& beside;  ///< [slot] a wall is within the kernel's reach
   ThreadPool& pool;
 
   PairLists lists() const { return neighbours.lists(); }
@@ -39,6 +40,11 @@ struct Flow {
     pool.forChunks(count(), kSweepChunk, body, kSweepAlone);
   }
   int particle(int slot) const { return neighbours.id[slot]; }
+  /// Most are far from walls, and theirs need not be fetched.
+  const WallSample& wall(int slot) const {
+    static const WallSample kNone;
+    return beside[slot] ? walls[particle(slot)] : kNone;
+  }
 };
 
 struct Tolerances {
@@ -89,8 +95,7 @@ class Projection {
   /// Kirkwood 1950). k itself is a multiplier: among disordered particles, where gradW of a linear
   /// field comes out 10 % small, it is so much larger, and it zigzags from layer to layer.
   double stress_m2s2(const Flow& flow, int slot) const {
-    const int p = flow.particle(slot);
-    return stress_[slot] + rateK_[p] * flow.walls[p].lambdaSlope;
+    return stress_[slot] + rateK_[flow.particle(slot)] * flow.wall(slot).lambdaSlope;
   }
 
   Tolerances tolerances;

@@ -52,10 +52,10 @@ void Shifting::shift(const Flow& f, double dt_s, double spacing_m, const std::ve
       shift_[i].setZero();
       carried_[i].setZero();
       if (least_[i] < kFullDensity) continue;
-      Vec3 gradient = spacing_m * (f.walls[p].gradLambda + f.neighbours.sumG.at(i).cast<double>());
+      Vec3 gradient = spacing_m * (f.wall(i).gradLambda + f.neighbours.sumG.at(i).cast<double>());
       gradient *= kMostGradient / std::max(kMostGradient, gradient.norm());
       slope_[i] = velocityGradient_s(f, slopes, v[p], i);
-      const double strength = f.walls[p].lambda > 0 ? kStrengthAtWall : kStrength;
+      const double strength = f.wall(i).lambda > 0 ? kStrengthAtWall : kStrength;
       shift_[i] = -strength * spacing_m * shearRate_s(slope_[i]) * gradient;
       moving[p] += shift_[i];
       carried_[i] = dt_s * (slope_[i] * shift_[i]);
@@ -74,7 +74,7 @@ void Shifting::carry(const Flow& f, double dt_s, bool changed, const std::vector
         const int p = f.particle(i);
         // before a wall density pushes layers to and fro, and the start of plane Poiseuille flow
         // comes out 6 % slow when that is taken for a way gone
-        if (!(f.walls[p].lambda > 0)) carried_[i] = dt_s * (slope_[i] * (moving[p] - v[p]));
+        if (!(f.wall(i).lambda > 0)) carried_[i] = dt_s * (slope_[i] * (moving[p] - v[p]));
         parts_[chunk] += carried_[i];
       }
     });

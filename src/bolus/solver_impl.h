@@ -66,6 +66,7 @@ struct Solver::Impl {
   bool followContacts(int i);
   bool compressible() const { return def.solver == SolverKind::wcsph && !frozen; }
   void chooseSound(double speed_ms);
+  Flow flow() const { return {neighbours, walls, beside, pool}; }
   void project(double dt_s, Substep& report);
   void pushExplicitly(double dt_s, Substep& report);
   void leaveInSlits(double dt_s);
@@ -108,6 +109,7 @@ struct Solver::Impl {
   mutable std::vector<Neighbours::Near> nearFilm;
   std::vector<std::uint8_t> active;  // takes part in the pressure solve
   Neighbours neighbours;
+  std::vector<std::uint8_t> beside;  // see Flow
   std::vector<Vec3> moving;  // velocities, and what the density left above rest adds to them
   Projection projection;
   Shifting shifting;

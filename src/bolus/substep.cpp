@@ -90,11 +90,11 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
 
 double Solver::Impl::chooseStep_s(double longest_s) {
   double fastest2 = 0, wall = 0;
-  for (std::size_t i = 0; i < active.size(); ++i) {
-    if (isGone(particles.state[i])) continue;
-    fastest2 = std::max(fastest2, particles.velocities[i].squaredNorm());
-    if (active[i]) wall = std::max(wall, walls[i].normalSpeed_ms);
-  }
+  for (std::size_t i = 0; i < active.size(); ++i)
+    if (!isGone(particles.state[i]))
+      fastest2 = std::max(fastest2, particles.velocities[i].squaredNorm());
+  for (int i = 0; i < neighbours.count; ++i)
+    wall = std::max(wall, flow().wall(i).normalSpeed_ms);
   double fastest = std::sqrt(fastest2);
   double dt = def.longestStep_s;
   if (compressible() && neighbours.count > 0) {
@@ -142,7 +142,7 @@ bool Solver::Impl::clampSpeed(double dt_s, Vec3& velocity) const {
 // compression; what density is left above rest moves particles apart without a part in velocity.
 void Solver::Impl::project(double dt_s, Substep& report) {
   std::vector<Vec3>& v = particles.velocities;
-  const Flow flow{neighbours, walls, pool};
+  const Flow flow = this->flow();
   const bool settling = settlingViscosity_Pas > 0;
   std::fill(particles.pressure_Pa.begin(), particles.pressure_Pa.end(), 0.0);
   Viscosity::Step viscous{flow,
@@ -214,7 +214,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
 
 // Pressure of the equation of state and viscosity, both explicit.
 void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
-  const Flow flow{neighbours, walls, pool};
+  const Flow flow = this->flow();
   if (tension) tension->push(dt_s, particles.velocities);
   wcsph.kick(flow, contacts, def.gravity_ms2, def.spacing_m, def.fluid.density_kgm3, dt_s,
              particles.velocities, particles.pressure_Pa);
@@ -234,7 +234,7 @@ void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
 Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
   Substep report;
   if (tension)
-    tension->measure({neighbours, walls, pool}, particles.positions, active,
+    tension->measure(flow(), particles.positions, active,
                      {wallTriangles, wallPositions, wallVelocities, skipped, field}, def.period_m);
   if (compressible())
     pushExplicitly(dt_s, report), moving = particles.velocities;

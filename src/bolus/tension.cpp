@@ -69,7 +69,7 @@ void Tension::measure(const Flow& flow, std::span<const Vec3> positions,
   flow.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = flow.particle(i);
-      const WallSample far = field_.sample(positions[p]), &near = flow.walls[p];
+      const WallSample far = field_.sample(positions[p]), &near = flow.wall(i);
       acceleration_[p] += adhesion_m2s2_ * (far.gradLambda - kTakenOff * near.gradLambda);
       stress_[p] -= adhesion_m2s2_ / 2 * (far.lambdaSlope - kTakenOff * near.lambdaSlope);
     }

@@ -33,7 +33,7 @@ constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
 
 Mat3 velocityGradient_s(const Flow& f, const SlopeSweep& slopes, const Vec3& v, int i) {
-  const WallSample& w = f.walls[f.particle(i)];
+  const WallSample& w = f.wall(i);
   float sums[9];
   slopes.run(i, sums);
   Mat3 gradient =
@@ -117,7 +117,7 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
   };
   for (int i = begin; i < end; ++i) {
     const int p = s.flow.particle(i);
-    const WallSample& w = s.flow.walls[p];
+    const WallSample& w = s.flow.wall(i);
     viscosity_[i] = viscosityAt(shearRates_.own_s[p]);
     mu_[i] = static_cast<float>(viscosity_[i]);
     evenOut(w, s.flow.neighbours.moment[i], evenness_[i]);
@@ -268,7 +268,7 @@ void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
       if (!std::isnan(shearRates_.own_s[p])) continue;
       const Mat3 gradient = velocityGradient_s(f, slopes, v[p], i);
       shearRates_.own_s[p] = shearRate_s(gradient);
-      shearRates_.wall_s[p] = shearRate_s(gradientBeforeWall_s(f.walls[p], v[p], gradient));
+      shearRates_.wall_s[p] = shearRate_s(gradientBeforeWall_s(f.wall(i), v[p], gradient));
     }
   });
 }

@@ -85,7 +85,7 @@ void Wcsph::kick(const Flow& f, const std::vector<std::vector<Contact>>& contact
   double sum = 0, squares = 0;
   for (int i = 0; i < n; ++i) {
     const int p = f.particle(i);
-    const double ratio = nb.sumW[i] / ownShare(f.walls[p]);
+    const double ratio = nb.sumW[i] / ownShare(f.wall(i));
     const double e = std::max(0.0, ratio - 1);
     sum += e;
     squares += e * e;
@@ -100,8 +100,8 @@ void Wcsph::kick(const Flow& f, const std::vector<std::vector<Contact>>& contact
       Vec3 a = Vec3::Zero();
       for (int e = nb.start[i]; e < nb.stop[i] && nb.index[e] < nb.count; ++e)
         a -= (k_[i] + k_[nb.index[e]]) * Vec3(nb.gx[e], nb.gy[e], nb.gz[e]);
-      a -= kWallMirror * k_[i] * f.walls[p].gradLambda;
-      a /= ownShare(f.walls[p]);
+      a -= kWallMirror * k_[i] * f.wall(i).gradLambda;
+      a /= ownShare(f.wall(i));
       a += gravity + repulsion_ms2(contacts[p], v[p], spacing_m);
       fastestPart_[chunk] = std::max(fastestPart_[chunk], a.norm());
       v[p] += dt_s * a;
