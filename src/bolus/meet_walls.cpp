@@ -85,6 +85,7 @@ void Solver::Impl::shutBranches(double t_s) {
 // Then what the walls do to those that take part.
 int Solver::Impl::pushInside() {
   const int n = static_cast<int>(particles.positions.size());
+  caught.resize(n);
   return static_cast<int>(pool.sumChunks(n, kWallChunk, [&](int begin, int end) {
     double rescued = 0;
     for (int i = begin; i < end; ++i)
@@ -94,6 +95,7 @@ int Solver::Impl::pushInside() {
         keepOutOfSlits(i);
         keepOnWall(i);
         if (active[i]) sampleWallsOf(i);
+        caught[i] = isCaught(i);
       }
     return rescued;
   }));
@@ -124,11 +126,7 @@ void Solver::Impl::updateStates() {
     State& s = particles.state[i];
     if (!isGone(s)) {
       const bool wasFilm = s == State::film;
-      const bool betweenCrossed = !contacts[i].empty() && contacts[i][0].distance_m < 0;
-      s = betweenCrossed || gap_m[i] < kFilmGap * def.spacing_m || walls[i].lambda > kFilmLambda ||
-                  staysFilm(i)
-              ? State::film
-              : State::fluid;
+      s = caught[i] || staysFilm(i) ? State::film : State::fluid;
       if (wasFilm && s == State::fluid) takenUp.push_back(static_cast<int>(i));
     }
     if (s != State::fluid) {
@@ -140,6 +138,11 @@ void Solver::Impl::updateStates() {
   for (const int i : takenUp) sampleWallsOf(i);
   for (std::size_t i = 0; i < active.size(); ++i)
     if (!active[i]) particles.densityRatio[i] = 1;
+}
+
+bool Solver::Impl::isCaught(int i) const {
+  const bool betweenCrossed = !contacts[i].empty() && contacts[i][0].distance_m < 0;
+  return betweenCrossed || gap_m[i] < kFilmGap * def.spacing_m || walls[i].lambda > kFilmLambda;
 }
 
 bool Solver::Impl::staysFilm(std::size_t i) const {

@@ -53,37 +53,40 @@ void PointGrid::build(std::span<const Vec3> points, std::span<const std::uint8_t
     if (taken(i)) order_[next[cell_[i]]++] = static_cast<int>(i);
 }
 
-// Slots in the order of cells, images behind them in the same sort.
+// Slots in the order of cells, images among them in the same sort.
 void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std::uint8_t> take,
-                               double cell_m, const Vec3& period_m) {
-  struct Point {
-    Vec3 x, shift;
+                               double cell_m, const Vec3& period_m, ThreadPool& pool) {
+  struct Image {
     int id;
-    bool image;
+    Vec3 shift;
   };
-  std::vector<Point> all;
-  all.reserve(points.size());
+  std::vector<int> taken;  // then come the images
+  taken.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (take.empty() || take[i])
-      all.push_back({points[i], Vec3::Zero(), static_cast<int>(i), false});
-  count = static_cast<int>(all.size());
+    if (take.empty() || take[i]) taken.push_back(static_cast<int>(i));
+  count = static_cast<int>(taken.size());
+  std::vector<Image> images;
+  const auto idOf = [&](int k) { return k < count ? taken[k] : images[k - count].id; };
+  const auto shiftOf = [&](int k) { return k < count ? Vec3::Zero().eval() : images[k - count].shift; };
+  const auto placeOf = [&](int k) -> Vec3 { return points[idOf(k)] + shiftOf(k); };
   for (int axis = 0; axis < 3; ++axis) {
     if (period_m[axis] <= 0) continue;
-    for (std::size_t i = 0, n = all.size(); i < n; ++i)
+    for (int k = 0, n = count + static_cast<int>(images.size()); k < n; ++k)
       for (const double shift : {-period_m[axis], period_m[axis]}) {
-        Point p = all[i];
-        p.x[axis] += shift;
-        p.shift[axis] += shift;
-        p.image = true;
-        if (p.x[axis] > -cell_m && p.x[axis] < period_m[axis] + cell_m) all.push_back(p);
+        Image image{idOf(k), shiftOf(k)};
+        image.shift[axis] += shift;
+        const double x = (points[image.id] + image.shift)[axis];
+        if (x > -cell_m && x < period_m[axis] + cell_m) images.push_back(image);
       }
   }
+  const int total = count + static_cast<int>(images.size());
   Vec3 low = Vec3::Constant(INFINITY), high = -low;
-  for (const Point& p : all) {
-    low = low.cwiseMin(p.x);
-    high = high.cwiseMax(p.x);
+  for (int k = 0; k < total; ++k) {
+    const Vec3 x = placeOf(k);
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
   }
-  if (all.empty()) low = high = Vec3::Zero();
+  if (total == 0) low = high = Vec3::Zero();
   low_ = low;
   for (cell_m_ = cell_m;; cell_m_ *= 2) {
     const Vec3 n = ((high - low) / cell_m_).array().floor() + 1;
@@ -91,45 +94,57 @@ void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std
     size_ = n.cast<int>();
     break;
   }
-  const int total = static_cast<int>(all.size());
-  std::vector<int> cell(total);
+  std::vector<int> cell(total), order(total);
+  const auto each = [&](const std::function<void(int, int, int)>& body) {
+    pool.forChunks(total, kChunk, body, kPlacesAlone);
+  };
+  each([&](int begin, int end, int) {
+    for (int k = begin; k < end; ++k) {
+      const Eigen::Vector3f f = (placeOf(k) - low_).cast<float>();
+      cell[k] =
+          (cellAlong(f.z(), 2) * size_.y() + cellAlong(f.y(), 1)) * size_.x() + cellAlong(f.x(), 0);
+    }
+  });
   cellStart_.assign(size_.prod() + 1, 0);
-  for (int i = 0; i < total; ++i) {
-    const Eigen::Vector3f f = (all[i].x - low_).cast<float>();
-    cell[i] =
-        (cellAlong(f.z(), 2) * size_.y() + cellAlong(f.y(), 1)) * size_.x() + cellAlong(f.x(), 0);
-    ++cellStart_[cell[i] + 1];
-  }
+  for (const int c : cell) ++cellStart_[c + 1];
   for (std::size_t c = 1; c < cellStart_.size(); ++c) cellStart_[c] += cellStart_[c - 1];
-  std::vector<int> next(cellStart_.begin(), cellStart_.end() - 1), order(total);
-  for (int i = 0; i < total; ++i) order[next[cell[i]]++] = i;
+  std::vector<int> next(cellStart_.begin(), cellStart_.end() - 1);
+  for (int k = 0; k < total; ++k) order[next[cell[k]]++] = k;
 
   id.resize(count);
   self_.resize(count);
   builtAt_.resize(count);
   slot.assign(points.size(), -1);
-  owner_.resize(total + 1);
-  shift_.resize(total);
-  for (auto* s : {&sx_, &sy_, &sz_}) s->assign(total + simd::kLanes, kFarAway);
-  places_.shape(total, 1);
-  int k = 0;
-  for (int s = 0; s < total; ++s) {
-    const Point& p = all[order[s]];
-    if (!p.image) {
-      id[k] = p.id;
-      builtAt_[k] = p.x;
-      self_[k] = s;
-      slot[p.id] = k++;
+  int slots = 0;
+  for (int s = 0; s < total; ++s)
+    if (order[s] < count) {
+      id[slots] = taken[order[s]];
+      self_[slots] = s;
+      slot[id[slots]] = slots;
+      ++slots;
     }
-    shift_[s] = p.shift;
-    places_.set(s, p.x - low_);
-    sx_[s] = places_[s][0];
-    sy_[s] = places_[s][1];
-    sz_[s] = places_[s][2];
-  }
-  places_.set(total, Vec3::Constant(-kFarAway));
-  for (int s = 0; s < total; ++s) owner_[s] = slot[all[order[s]].id];
+  owner_.resize(total + 1);
   owner_[total] = count;
+  shift_.resize(total);
+  for (auto* s : {&sx_, &sy_, &sz_}) {
+    s->resize(total + simd::kLanes);
+    std::fill(s->begin() + total, s->end(), kFarAway);
+  }
+  places_.shape(total, 1);
+  places_.set(total, Vec3::Constant(-kFarAway));
+  each([&](int begin, int end, int) {
+    for (int s = begin; s < end; ++s) {
+      const int k = order[s];
+      const Vec3 x = placeOf(k);
+      owner_[s] = slot[idOf(k)];
+      if (k < count) builtAt_[owner_[s]] = x;
+      shift_[s] = shiftOf(k);
+      places_.set(s, x - low_);
+      sx_[s] = places_[s][0];
+      sy_[s] = places_[s][1];
+      sz_[s] = places_[s][2];
+    }
+  });
 }
 
 void Neighbours::around(const Vec3& p, std::vector<Near>& out) const {
@@ -343,7 +358,7 @@ void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_
                        double skin_m, ThreadPool& pool, const Range& then) {
   support_m_ = kernel.support_m();
   skin_m_ = skin_m;
-  sortIntoCells(points, take, support_m_ + skin_m, period_m);
+  sortIntoCells(points, take, support_m_ + skin_m, period_m, pool);
   start.assign(count + 1, 0);
   found_.resize((count + kChunk - 1) / kChunk);
   pool.forChunks(count, kChunk, [&](int begin, int end, int chunk) {

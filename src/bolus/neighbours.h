@@ -101,7 +101,7 @@ struct Neighbours {
     std::vector<int> places, length;
   };
   void sortIntoCells(std::span<const Vec3> points, std::span<const std::uint8_t> take,
-                     double cell_m, const Vec3& period_m);
+                     double cell_m, const Vec3& period_m, ThreadPool& pool);
   void search(int begin, int end, float reach_m, Found& out) const;
   void measure(const KernelTable& kernel, double volume_m3, ThreadPool& pool, const Range& then);
 

@@ -40,6 +40,8 @@ struct Solver::Impl {
   Substep substep(double dt_s);  ///< of at most dt_s
   double projectInReach(double dt_s, Substep& report);
   bool outruns(double dt_s, const Vec3& velocity) const;
+  template <class Term>
+  double largest(int n, Term&& term) const;
   Result<void> checkStep(const Substep& s, double dt_s);
   void finishFrame();  ///< path coordinates of all particles, escape check
 
@@ -54,6 +56,7 @@ struct Solver::Impl {
   int pushInside();
   void keepOutOfSlits(int i);
   void updateStates();
+  bool isCaught(int i) const;
   bool staysFilm(std::size_t i) const;
   Vec3 filmVelocity_ms(int i) const;
   void keepOnWall(int i);
@@ -110,6 +113,13 @@ struct Solver::Impl {
   std::vector<std::uint8_t> active;  // takes part in the pressure solve
   Neighbours neighbours;
   std::vector<std::uint8_t> beside;  // see Flow
+  std::vector<std::uint8_t> outran;  // [slot] faster than its contacts reach
+  struct {
+    std::vector<Vec3> velocities;
+    std::vector<double> rate, density;
+    Viscosity::ShearRates shear;
+  } kept;                  // a step, should it be taken again
+  std::vector<std::uint8_t> caught;  // [particle] by the walls' shape: film
   std::vector<Vec3> moving;  // velocities, and what the density left above rest adds to them
   Projection projection;
   Shifting shifting;

@@ -27,6 +27,7 @@ constexpr double kShortestRetry = 1.0 / 64;  // of a step that is taken again, a
 // move half as fast. Both assumed (2 to 3 m/s, 0.6 to 0.8 spacings).
 constexpr double kShotOut_ms = 2.5, kShotOutGap = 0.75;
 constexpr int kMoveChunk = 64;          // particles per work item
+constexpr int kLookAlone = 4000;        // are looked at sooner than a thread wakes, assumed
 constexpr double kFilmThickness = 0.1;  // spacings, assumed (0.05 to 0.3): how thick a film drains
 
 // Nusselt (1916): mean speed of a film of thickness h down a wall is rho g h^2 / (3 eta); here per
@@ -88,13 +89,25 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   finishFrame();
 }
 
+// The largest of term(0 .. n - 1), or 0.
+template <class Term>
+double Solver::Impl::largest(int n, Term&& term) const {
+  std::vector<double> parts((n + kMoveChunk - 1) / kMoveChunk);
+  pool.forChunks(
+      n, kMoveChunk,
+      [&](int begin, int end, int chunk) {
+        for (int i = begin; i < end; ++i) parts[chunk] = std::max(parts[chunk], term(i));
+      },
+      kLookAlone);
+  return parts.empty() ? 0 : std::ranges::max(parts);
+}
+
 double Solver::Impl::chooseStep_s(double longest_s) {
-  double fastest2 = 0, wall = 0;
-  for (std::size_t i = 0; i < active.size(); ++i)
-    if (!isGone(particles.state[i]))
-      fastest2 = std::max(fastest2, particles.velocities[i].squaredNorm());
-  for (int i = 0; i < neighbours.count; ++i)
-    wall = std::max(wall, flow().wall(i).normalSpeed_ms);
+  const double fastest2 = largest(static_cast<int>(active.size()), [&](int i) {
+    return isGone(particles.state[i]) ? 0 : particles.velocities[i].squaredNorm();
+  });
+  const Flow f = flow();
+  const double wall = largest(f.count(), [&](int slot) { return f.wall(slot).normalSpeed_ms; });
   double fastest = std::sqrt(fastest2);
   double dt = def.longestStep_s;
   if (compressible() && neighbours.count > 0) {
@@ -185,6 +198,7 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   const auto pressure = [&](int begin, int end) {  // per volume that the particle really has
     for (int i = begin; i < end; ++i) {
       const int p = flow.particle(i);
+      outran[i] = outruns(dt_s, v[p]) || outruns(dt_s, moving[p]);
       particles.pressure_Pa[p] = projection.stress_m2s2(flow, i) * def.fluid.density_kgm3 *
                                  particles.densityRatio[p];
     }
@@ -195,20 +209,19 @@ void Solver::Impl::project(double dt_s, Substep& report) {
 
 // A step that speeds a particle up beyond the reach of its contacts is taken again, half as long.
 double Solver::Impl::projectInReach(double dt_s, Substep& report) {
-  const std::vector<Vec3> before = particles.velocities;
-  const std::vector<double> rate = projection.rateWarm(), density = projection.densityWarm();
-  const Viscosity::ShearRates shear = viscosity.shearRates();
+  kept.velocities = particles.velocities;
+  kept.rate = projection.rateWarm();
+  kept.density = projection.densityWarm();
+  kept.shear = viscosity.shearRates();
+  outran.assign(neighbours.count, 0);
   for (const double least_s = kShortestRetry * dt_s;; dt_s /= 2) {
     project(dt_s, report);
-    const auto outrun = [&](int i) {
-      return outruns(dt_s, particles.velocities[i]) || outruns(dt_s, moving[i]);
-    };
-    if (dt_s <= std::max(least_s, kShortestStep_s) || std::ranges::none_of(neighbours.id, outrun))
+    if (dt_s <= std::max(least_s, kShortestStep_s) || std::ranges::count(outran, 1) == 0)
       return dt_s;
-    particles.velocities = before;
-    projection.rateWarm() = rate;
-    projection.densityWarm() = density;
-    viscosity.shearRates() = shear;
+    particles.velocities = kept.velocities;
+    projection.rateWarm() = kept.rate;
+    projection.densityWarm() = kept.density;
+    viscosity.shearRates() = kept.shear;
   }
 }
 
