@@ -14,7 +14,8 @@ constexpr int kRescues = 4;             // times a particle outside is looked at
 // Farther in one go no wall pushes, in spacings, assumed (0.1 to 0.5): where sheets cross and part,
 // a cusp opens at once, and what it held comes out bit by bit.
 constexpr double kLongestPush = 0.2;
-// After a push no longer than this no wall point is looked for again; spacings, assumed (1e-3 to 0.03).
+// After a push no longer than this no wall point is looked for again; spacings, assumed (1e-3 to
+// 0.03).
 constexpr double kSmallPush = 0.01;
 constexpr double kJustInside = 1e-3;  // spacings, assumed: small against the smallest gap
 

@@ -8,7 +8,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr int kWallChunk = 16;  // particles per work item of wall work
+constexpr int kWallChunk = 16;      // particles per work item of wall work
 constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
 // More than contacts reach, for rounding and walls that speed up; spacings, assumed (0.05 to 0.2).
 constexpr double kClearMargin = 0.1;

@@ -42,8 +42,7 @@ void PointGrid::build(std::span<const Vec3> points, std::span<const std::uint8_t
   cell_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!taken(i)) continue;
-    const Eigen::Vector3i c =
-        cellOf(points[i]).cwiseMax(0).cwiseMin(size_.array().matrix() - kOne);
+    const Eigen::Vector3i c = cellOf(points[i]).cwiseMax(0).cwiseMin(size_.array().matrix() - kOne);
     cell_[i] = (c.z() * size_.y() + c.y()) * size_.x() + c.x();
     ++start_[cell_[i] + 1];
   }
@@ -67,7 +66,9 @@ void Neighbours::sortIntoCells(std::span<const Vec3> points, std::span<const std
   count = static_cast<int>(taken.size());
   std::vector<Image> images;
   const auto idOf = [&](int k) { return k < count ? taken[k] : images[k - count].id; };
-  const auto shiftOf = [&](int k) { return k < count ? Vec3::Zero().eval() : images[k - count].shift; };
+  const auto shiftOf = [&](int k) {
+    return k < count ? Vec3::Zero().eval() : images[k - count].shift;
+  };
   const auto placeOf = [&](int k) -> Vec3 { return points[idOf(k)] + shiftOf(k); };
   for (int axis = 0; axis < 3; ++axis) {
     if (period_m[axis] <= 0) continue;
@@ -223,7 +224,8 @@ SC_CLONES int within(const Block& b, float x, float y, float z, float reach2, in
   int found = 0;
   for (int k = 0; k < b.count; k += kLanes) {
     const F8 dx = all(x) - load(&b.x[k]), dy = all(y) - load(&b.y[k]), dz = all(z) - load(&b.z[k]);
-    found += putValues(dx * dx + dy * dy + dz * dz < all(reach2), loadInt(&b.place[k]), out + found);
+    found +=
+        putValues(dx * dx + dy * dy + dz * dz < all(reach2), loadInt(&b.place[k]), out + found);
   }
   return found;
 }
@@ -329,7 +331,8 @@ void Neighbours::search(int begin, int end, float reach, Found& out) const {
       }
     }
     block.count = 0;
-    const Eigen::Vector3i from = (cell.array() - 1).max(0), to = (cell + kOne).cwiseMin(size_ - kOne);
+    const Eigen::Vector3i from = (cell.array() - 1).max(0),
+                          to = (cell + kOne).cwiseMin(size_ - kOne);
     for (int rz = from.z(); rz <= to.z(); ++rz)
       for (int ry = from.y(); ry <= to.y(); ++ry) {
         const int row = (rz * size_.y() + ry) * size_.x();

@@ -22,8 +22,8 @@ class PointGrid {
   /// Only points with take[i] != 0 enter; an empty `take` takes all.
   void build(std::span<const Vec3> points, std::span<const std::uint8_t> take, double cell_m);
 
-  /// Calls visit(first, last) for each row of the cells within reach_m of p along every axis: places
-  /// in order().
+  /// Calls visit(first, last) for each row of the cells within reach_m of p along every axis:
+  /// places in order().
   template <class Visit>
   void rowsAround(const Vec3& p, double reach_m, Visit&& visit) const {
     if (order_.empty()) return;

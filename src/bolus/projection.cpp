@@ -125,7 +125,8 @@ PressureSweep Projection::pressureOf(const Flow& f, const std::vector<float>& k)
   return {f.lists(), k.data(), mobility_.data(), wall_.data(), acceleration_.data()};
 }
 
-/// source(slot, rate of rho* in 1/s) into source_; with `pushes`, what the first pressure does, too.
+/// source(slot, rate of rho* in 1/s) into source_; with `pushes`, what the first pressure does,
+/// too.
 template <class Source>
 void Projection::findSource(const Flow& f, const std::vector<Vec3>& v, bool pushes,
                             Source&& source) {

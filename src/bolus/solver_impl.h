@@ -118,7 +118,7 @@ struct Solver::Impl {
     std::vector<Vec3> velocities;
     std::vector<double> rate, density;
     Viscosity::ShearRates shear;
-  } kept;                  // a step, should it be taken again
+  } kept;                            // a step, should it be taken again
   std::vector<std::uint8_t> caught;  // [particle] by the walls' shape: film
   std::vector<Vec3> moving;  // velocities, and what the density left above rest adds to them
   Projection projection;

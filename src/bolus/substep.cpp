@@ -158,12 +158,9 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   const Flow flow = this->flow();
   const bool settling = settlingViscosity_Pas > 0;
   std::fill(particles.pressure_Pa.begin(), particles.pressure_Pa.end(), 0.0);
-  Viscosity::Step viscous{flow,
-                          def.fluid,
-                          {.override_Pas = settlingViscosity_Pas, .slip = def.slip},
-                          dt_s,
-                          kernel.support_m(),
-                          v};
+  Viscosity::Step viscous{
+      flow, def.fluid,          {.override_Pas = settlingViscosity_Pas, .slip = def.slip},
+      dt_s, kernel.support_m(), v};
   projection.prepare(flow);
   viscosity.begin(viscous);
   shifting.begin(flow, moving);
@@ -199,8 +196,8 @@ void Solver::Impl::project(double dt_s, Substep& report) {
     for (int i = begin; i < end; ++i) {
       const int p = flow.particle(i);
       outran[i] = outruns(dt_s, v[p]) || outruns(dt_s, moving[p]);
-      particles.pressure_Pa[p] = projection.stress_m2s2(flow, i) * def.fluid.density_kgm3 *
-                                 particles.densityRatio[p];
+      particles.pressure_Pa[p] =
+          projection.stress_m2s2(flow, i) * def.fluid.density_kgm3 * particles.densityRatio[p];
     }
   };
   shifting.carry(flow, dt_s, report.density.iterations > 0, moving, v, pressure);

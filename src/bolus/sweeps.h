@@ -88,7 +88,7 @@ struct RateSweep {
 struct GradientSweep {
   PairLists pairs;
   const float *k;
-  double *out;              ///< [slot][3]
+  double *out;     ///< [slot][3]
   const float *r;  ///< [pair]
   float *stress;
   void run(int begin, int end) const;

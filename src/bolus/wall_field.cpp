@@ -17,7 +17,8 @@ constexpr double kEmptyArea_m2 = 1e-16;  // slivers without a usable normal
 // Nearer than this the wall shear no longer grows: 0.3 spacings, assumed (0.2 to 0.5), the order
 // of the distance at which particles rest.
 constexpr double kLeastShearDistance = 0.3;
-constexpr double kSameDirection = 0.95;  // cosine above which two contacts say the same
+constexpr float kSameDirection = 0.95f;   // cosine above which two contacts say the same
+constexpr float kSeenFromBehind = 1e-6f;  // cosine, rounding of what lies in the plane of a piece
 
 double cornerAngle(const Vec3& at, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - at, v = c - at;
@@ -252,43 +253,50 @@ WallSample WallField::sample(const Vec3& p) const {
   return out;
 }
 
+// In single precision who is near and which way; in double what is nearest and what comes out.
 void WallField::contacts(const Vec3& p, double radius_m, std::vector<Contact>& out) const {
   out.clear();
-  struct Hit {
-    double d2;
-    int piece;
-    Vec3 bary, point;
-    bool nearer(const Hit& o) const { return d2 != o.d2 ? d2 < o.d2 : piece < o.piece; }
-  };
-  thread_local std::vector<Hit> hits;
-  hits.clear();
   // a hair more for the single precision of the choice
   const float reach = static_cast<float>(radius_m + 1e-4 * spacing_m_);
+  const float support = static_cast<float>(table_->support_m());
   const Vec3f at = (p - low_).cast<float>();
-  thread_local std::vector<int> near;
-  std::size_t count = 0;
+  thread_local NearPoints near;
+  near.clear();
   grid_.rowsAround(p, reach + largestRadius_m_, [&](int first, int last) {
-    near.resize(std::max(near.size(), count + last - first + 8));
-    count += nearPieces(arrays_, at.x(), at.y(), at.z(), reach,
-                        static_cast<float>(table_->support_m()), first, last, &near[count]);
+    lookForPoints(arrays_, at.x(), at.y(), at.z(), reach, support, first, last, near);
   });
-  for (std::size_t e = 0; e < count; ++e) {
-    const int k = near[e];
-    const Piece& t = pieces_[k];
-    const Vec3 bary = closestBarycentric(p, t.a, t.b, t.c);
-    const Vec3 q = t.a * bary[0] + t.b * bary[1] + t.c * bary[2];
-    const double d2 = (p - q).squaredNorm();
-    if (d2 < radius_m * radius_m) hits.push_back({d2, k, bary, q});
-  }
-  if (hits.empty()) return;
-  const auto nearest = [](auto begin, auto end) {
-    return *std::min_element(begin, end, [](const Hit& a, const Hit& b) { return a.nearer(b); });
+  if (near.candidateCount == 0) return;
+  findPoints(arrays_, at.x(), at.y(), at.z(), reach, near);
+  if (near.count == 0) return;
+  struct Hit {
+    double d2 = INFINITY;
+    int piece = -1;
+    Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
   };
-  Hit h = nearest(hits.begin(), hits.end());
+  const auto hitOn = [&](int piece) {
+    const Piece& t = pieces_[piece];
+    Hit h{0, piece, closestBarycentric(p, t.a, t.b, t.c), Vec3::Zero()};
+    h.point = t.a * h.bary[0] + t.b * h.bary[1] + t.c * h.bary[2];
+    h.d2 = (p - h.point).squaredNorm();
+    return h;
+  };
+  const double same = 1e-6 * spacing_m_;
+  // What might be the nearest, or share its point, for all that single precision knows.
+  thread_local std::vector<Hit> hits;
+  hits.clear();
+  const float least = std::sqrt(*std::min_element(&near.away2[0], &near.away2[0] + near.count)) +
+                      static_cast<float>(1e-4 * spacing_m_);
+  Hit h;
+  for (int k = 0; k < near.count; ++k) {
+    if (near.away2[k] > least * least) continue;
+    hits.push_back(hitOn(near.piece[k]));
+    const Hit& o = hits.back();
+    if (o.d2 < h.d2 || (o.d2 == h.d2 && o.piece < h.piece)) h = o;
+  }
+  if (!(h.d2 < radius_m * radius_m)) return;
   // Which side: the angle-weighted normal of all pieces that share the nearest point (Baerentzen &
   // Aanaes 2005), right at edges and corners too.
   Vec3 normal = Vec3::Zero();
-  const double same = 1e-6 * spacing_m_;
   for (const Hit& o : hits) {
     if ((o.point - h.point).squaredNorm() > same * same) continue;
     const Piece& t = pieces_[o.piece];
@@ -307,14 +315,29 @@ void WallField::contacts(const Vec3& p, double radius_m, std::vector<Contact>& o
                    distance_m, t.triangle});
     if (side < 0 || static_cast<int>(out.size()) == kMaxContacts) return;
     // Of the others none that lies the same way, nor one seen from behind: other tissue in between.
-    std::erase_if(hits, [&](const Hit& o) {
-      const double d = std::sqrt(o.d2);
-      if (!(d > same)) return true;
-      const Vec3 way = (p - o.point) / d;
-      return way.dot(pieces_[o.piece].normal) > 1e-9 || way.dot(inward) > kSameDirection;
-    });
-    if (hits.empty()) return;
-    h = nearest(hits.begin(), hits.end());
+    const Vec3f in = inward.cast<float>();
+    int left = 0;
+    for (int k = 0; k < near.count; ++k) {
+      const Vec3f way = -Vec3f(near.x[k], near.y[k], near.z[k]);
+      const float away = std::sqrt(near.away2[k]);
+      const int piece = near.piece[k];
+      const float behind = way.x() * arrays_.at(PieceArrays::kNx)[piece] +
+                           way.y() * arrays_.at(PieceArrays::kNy)[piece] +
+                           way.z() * arrays_.at(PieceArrays::kNz)[piece];
+      if (!(away > static_cast<float>(same)) || behind > kSeenFromBehind * away ||
+          way.dot(in) > kSameDirection * away)
+        continue;
+      near.piece[left] = piece;
+      near.x[left] = near.x[k];
+      near.y[left] = near.y[k];
+      near.z[left] = near.z[k];
+      near.away2[left++] = near.away2[k];
+    }
+    near.count = left;
+    if (near.count == 0) return;
+    h = hitOn(
+        near.piece[std::min_element(&near.away2[0], &near.away2[0] + near.count) - &near.away2[0]]);
+    if (!(h.d2 < radius_m * radius_m)) return;
     distance_m = std::sqrt(h.d2);
     inward = (p - h.point) / distance_m;
   }

@@ -55,8 +55,7 @@ constexpr float kPif = static_cast<float>(kPi);
 }  // namespace
 
 float PieceArrays::close2(int rule, float radius_m, float spacing_m, float support_m) {
-  const float away =
-      std::max(kFarRadii[rule] * radius_m, kFarSpacings[rule] * spacing_m);
+  const float away = std::max(kFarRadii[rule] * radius_m, kFarSpacings[rule] * spacing_m);
   const float close = std::min(away, kFewPoints * support_m);
   return close * close;
 }
@@ -229,6 +228,58 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
   sums.frictionVelocity = {sum(drag.x), sum(drag.y), sum(drag.z)};
 }
 
+/// The point of a + t e, 0 <= t <= 1, that is nearest to the origin.
+SC_INLINE V onEdge(const V& a, const V& e) {
+  const F8 t =
+      smallest(largest(all(0) - dot(a, e) / largest(dot(e, e), all(1e-30f)), all(0)), all(1));
+  return {a.x + t * e.x, a.y + t * e.y, a.z + t * e.z};
+}
+SC_INLINE V minus(const V& a, const V& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+/// (e x n).a: not above zero where the origin, in the plane with normal n, is inside of edge e.
+SC_INLINE F8 outside(const V& e, const V& n, const V& a) {
+  return all(0) - ((e.y * n.z - e.z * n.y) * a.x + (e.z * n.x - e.x * n.z) * a.y +
+                   (e.x * n.y - e.y * n.x) * a.z);
+}
+
+SC_CLONES void nearestPoints(const PieceArrays& p, float px, float py, float pz, float reach2,
+                             NearPoints& out) {
+  using P = PieceArrays;
+  const F8 o[3] = {all(px), all(py), all(pz)}, zero = all(0);
+  int found = 0;
+  for (int k = 0; k < out.candidateCount; k += kLanes) {
+    const int* at = &out.candidates[k];
+    F8 first[8], second[8];
+    gather8<P::kRecord>(p.records.data(), at, first);
+    gather8<P::kRecord>(p.records.data() + 8, at, second);
+    const V a{first[0] - o[0], first[1] - o[1], first[2] - o[2]};
+    const V b{first[3] - o[0], first[4] - o[1], first[5] - o[2]};
+    const V c{first[6] - o[0], first[7] - o[1], second[0] - o[2]};
+    const V n{second[1], second[2], second[3]};
+    const V ab = minus(b, a), bc = minus(c, b), ca = minus(a, c);
+    const F8 offset = dot(a, n);
+    V q{n.x * offset, n.y * offset, n.z * offset};
+    const I8 within =
+        (outside(ab, n, a) <= zero) & (outside(bc, n, b) <= zero) & (outside(ca, n, c) <= zero);
+    F8 away2 = select(within, dot(q, q), all(1e30f));
+    for (const V& edge : {onEdge(a, ab), onEdge(b, bc), onEdge(c, ca)}) {
+      const F8 edge2 = dot(edge, edge);
+      const I8 nearer = edge2 < away2;
+      q = {select(nearer, edge.x, q.x), select(nearer, edge.y, q.y), select(nearer, edge.z, q.z)};
+      away2 = select(nearer, edge2, away2);
+    }
+    const I8 near = (away2 < all(reach2)) & (kCount < allInt(out.candidateCount - k));
+    if (!any(near)) continue;
+    putValues(near, loadInt(at), &out.piece[found]);
+    putValues(near, q.x, &out.x[found]);
+    putValues(near, q.y, &out.y[found]);
+    putValues(near, q.z, &out.z[found]);
+    found += putValues(near, away2, &out.away2[found]);
+  }
+  out.count = found;
+}
+
 SC_CLONES int candidates(const PieceArrays& p, float px, float py, float pz, float reach,
                          float support, int begin, int end, int* out) {
   using P = PieceArrays;
@@ -271,8 +322,22 @@ void WallQuadrature::integrate(float x, float y, float z, NearPieces& near, Wall
   integrateAll(*this, x, y, z, near, sums);
 }
 
-int nearPieces(const PieceArrays& pieces, float x, float y, float z, float reach_m, float support_m,
-               int begin, int end, int* out) {
-  return candidates(pieces, x, y, z, reach_m, support_m, begin, end, out);
+void lookForPoints(const PieceArrays& pieces, float x, float y, float z, float reach_m,
+                   float support_m, int begin, int end, NearPoints& near) {
+  const std::size_t most = near.candidateCount + end - begin + kLanes;
+  if (near.candidates.size() < most) near.candidates.resize(2 * most);
+  near.candidateCount += candidates(pieces, x, y, z, reach_m, support_m, begin, end,
+                                    near.candidates.data() + near.candidateCount);
+}
+
+void findPoints(const PieceArrays& pieces, float x, float y, float z, float reach_m,
+                NearPoints& near) {
+  const std::size_t most = near.candidateCount + kLanes;
+  if (near.piece.size() < most) {
+    near.piece.resize(2 * most);
+    for (auto* a : {&near.x, &near.y, &near.z, &near.away2}) a->resize(2 * most);
+  }
+  std::fill_n(near.candidates.begin() + near.candidateCount, kLanes - 1, pieces.count);  // no piece
+  nearestPoints(pieces, x, y, z, reach_m * reach_m, near);
 }
 }  // namespace swallowclip::bolus

@@ -64,7 +64,17 @@ struct WallQuadrature {
   void integrate(float x, float y, float z, NearPieces& near, WallSums& sums) const;
 };
 
-/// Pieces of [begin, end) with a point perhaps within `reach` of (x, y, z): appended to out.
-int nearPieces(const PieceArrays& pieces, float x, float y, float z, float reach_m, float support_m,
-               int begin, int end, int* out);
+/// Nearest points of pieces that are within reach of a place, from there, in single precision.
+struct NearPoints {
+  std::vector<int> piece, candidates;
+  std::vector<float> x, y, z, away2;  // m, m^2
+  int count = 0, candidateCount = 0;
+  void clear() { count = candidateCount = 0; }
+};
+/// Takes pieces of [begin, end) that perhaps have such a point as candidates; then finds the
+/// points.
+void lookForPoints(const PieceArrays& pieces, float x, float y, float z, float reach_m,
+                   float support_m, int begin, int end, NearPoints& near);
+void findPoints(const PieceArrays& pieces, float x, float y, float z, float reach_m,
+                NearPoints& near);
 }  // namespace swallowclip::bolus

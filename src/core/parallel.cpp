@@ -35,17 +35,15 @@ ThreadPool::~ThreadPool() {
   for (std::thread& t : workers_) t.join();
 }
 
-// From one end of one's own stretch, from the other of another's. Which one alternates from round to
-// round: what was used last is still in the cache.
+// From the front of one's own stretch, from the back of another's.
 bool ThreadPool::take(Stretch& s, bool own, int& chunk) {
   constexpr std::uint64_t kMask = (1ull << kBits) - 1;
   std::uint64_t left = s.left.load(std::memory_order_acquire);
   for (;;) {
     const std::uint64_t end = left & kMask, next = left >> kBits & kMask;
     if (next >= end) return false;
-    const bool front = own == ((left >> (2 * kBits) & 1) == 0);
-    const std::uint64_t less = front ? left + (1ull << kBits) : left - 1;
-    chunk = static_cast<int>(front ? next : end - 1);
+    const std::uint64_t less = own ? left + (1ull << kBits) : left - 1;
+    chunk = static_cast<int>(own ? next : end - 1);
     if (s.left.compare_exchange_weak(left, less, std::memory_order_acq_rel,
                                      std::memory_order_acquire))
       return true;
@@ -92,11 +90,7 @@ void ThreadPool::forChunks(int n, int chunk, const std::function<void(int, int, 
   if (n <= 0) return;
   const int count = (n + chunk - 1) / chunk;
   if (workers_.empty() || count == 1 || count > kMostChunks || n < alone) {
-    backwards_ = !backwards_;
-    for (int k = 0; k < count; ++k) {
-      const int c = backwards_ ? count - 1 - k : k;
-      body(c * chunk, std::min(n, (c + 1) * chunk), c);
-    }
+    for (int c = 0; c < count; ++c) body(c * chunk, std::min(n, (c + 1) * chunk), c);
     return;
   }
   body_.store(&body, std::memory_order_relaxed);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Fixed chunks, so that results never depend on the number of threads: a caller writes either
 // per index, or per chunk and reduces the chunks in order. Each thread begins with its own stretch
-// of chunks, the same one in every loop over as many and from alternate ends, so that what it used last
-// is still in its cache; then it helps others, from the far end of theirs. Workers look for work for some microseconds,
+// of chunks, the same one in every loop over as many, so that what it wrote is still in its cache;
+// then it helps others, from the far end of theirs. Workers look for work for some microseconds,
 // then sleep.
 #pragma once
 #include <atomic>
@@ -55,6 +55,5 @@ class ThreadPool {
   alignas(64) std::atomic<int> finished_{0};
   alignas(64) std::atomic<std::uint64_t> round_{0};
   std::atomic<bool> stop_{false}, waiting_{false};
-  bool backwards_ = false;  // where the calling thread works alone
 };
 }  // namespace swallowclip

@@ -189,4 +189,9 @@ SC_INLINE int putValues(I8 mask, I8 values, int* out) {
   std::memcpy(out, &at, sizeof at);
   return kLanesOf.count[m];
 }
+SC_INLINE int putValues(I8 mask, F8 values, float* out) {
+  const unsigned m = bits(mask);
+  store(out, __builtin_shuffle(values, loadInt(kLanesOf.of[m])));
+  return kLanesOf.count[m];
+}
 }  // namespace swallowclip::simd

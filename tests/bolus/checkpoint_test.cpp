@@ -36,6 +36,35 @@ TEST_P(Checkpoint, GoesOnToTheBit) {
   EXPECT_EQ(resumed.particles().densityRatio, whole.particles().densityRatio);
 }
 
+// Many particles are renumbered inside; outside each keeps its number, whatever the threads and
+// interruptions.
+TEST(ManyParticles, KeepTheirNumbers) {
+  const WallMotion walls = testing::still(testing::box({0, 0, 0}, {0.02, 0.02, 0.05}, 3e-3));
+  BolusDef def;
+  def.spacing_m = 0.5e-3;
+  constexpr int kEdge = 21;
+  std::vector<Vec3> places;
+  for (int i = 0; i < kEdge * kEdge * kEdge; ++i)
+    places.push_back(def.spacing_m * Vec3(i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge) +
+                     Vec3(5e-3, 5e-3, 0.035));
+  def.volume_m3 = static_cast<double>(places.size()) * std::pow(def.spacing_m, 3);
+  Solver whole(def, walls, 2);
+  ASSERT_TRUE(whole.place(0, places));
+  ASSERT_TRUE(whole.advanceTo(0.06));
+  ASSERT_GT(whole.stats().steps, 100);  // so that they were renumbered
+  const Vec3 fallen = whole.particles().positions[0] - places[0];
+  EXPECT_NEAR(fallen.z(), -9.81 * 0.06 * 0.06 / 2, 3e-4);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    ASSERT_LT((whole.particles().positions[i] - places[i] - fallen).norm(), 1e-6) << i;
+  const std::string saved = whole.save();
+  ASSERT_TRUE(whole.advanceTo(0.1));  // past the floor
+
+  Solver resumed(def, walls, 1);
+  ASSERT_TRUE(resumed.restore(saved));
+  ASSERT_TRUE(resumed.advanceTo(0.1));
+  EXPECT_EQ(resumed.digest(), whole.digest());
+}
+
 TEST(CheckpointFile, RefusesDamageAndStrangers) {
   const WallMotion walls = testing::closingTube({});
   Solver s(honey(), walls, 1);
