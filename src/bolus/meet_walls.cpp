@@ -39,13 +39,16 @@ void Solver::Impl::evaluateWalls(double t_s) {
     low = low.cwiseMin(particles.positions[i]);
     high = high.cwiseMax(particles.positions[i]);
   }
+  const bool stood = fastestWall_ms == 0;
   fastestWall_ms = 0;
   for (const Vec3& v : wallVelocities) fastestWall_ms = std::max(fastestWall_ms, v.squaredNorm());
   fastestWall_ms = std::sqrt(fastestWall_ms);
-  wallsStood = fastestWall_ms == 0 && wallPositions == wallsBefore;
-  wallsBefore = wallPositions;
+  const bool samePlaces = wallPositions == wallsBefore;
+  wallsStood = fastestWall_ms == 0 && samePlaces;
+  if (!samePlaces) wallsBefore = wallPositions;
   shutBranches(t_s);
-  field.build(wallTriangles, wallPositions, wallVelocities, low, high, skipped);
+  field.build(wallTriangles, wallPositions, wallVelocities, low, high, skipped,
+              stood && wallsStood);
 }
 
 // A branch shut lip to lip and empty is no wall: the tube goes, a cap closes the slit it leaves.

@@ -107,7 +107,9 @@ double Solver::Impl::chooseStep_s(double longest_s) {
     return isGone(particles.state[i]) ? 0 : particles.velocities[i].squaredNorm();
   });
   const Flow f = flow();
-  const double wall = largest(f.count(), [&](int slot) { return f.wall(slot).normalSpeed_ms; });
+  const double wall = fastestWall_ms == 0 ? 0 : largest(f.count(), [&](int slot) {
+    return f.wall(slot).normalSpeed_ms;
+  });
   double fastest = std::sqrt(fastest2);
   double dt = def.longestStep_s;
   if (compressible() && neighbours.count > 0) {

@@ -133,21 +133,21 @@ void WallField::addPiece(const Piece& t, int depth) {
 // for.
 bool WallField::sameWalls(std::span<const Triangle> triangles, std::span<const Vec3> x,
                           std::span<const Vec3> v, const Vec3& low, const Vec3& high,
-                          std::span<const std::uint8_t> skip) {
+                          std::span<const std::uint8_t> skip, bool stood) {
   const auto same = [](const auto& a, const auto& b) {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
   };
   if (built_.triangles == triangles.size() && (low.array() >= built_.low.array()).all() &&
-      (high.array() <= built_.high.array()).all() && same(built_.positions, x) &&
-      same(built_.velocities, v) && same(built_.skip, skip))
+      (high.array() <= built_.high.array()).all() && same(built_.skip, skip) &&
+      (stood || (same(built_.positions, x) && same(built_.velocities, v))))
     return true;
   return false;
 }
 
 void WallField::build(std::span<const Triangle> triangles, std::span<const Vec3> x,
                       std::span<const Vec3> v, const Vec3& low, const Vec3& high,
-                      std::span<const std::uint8_t> skip) {
-  if (sameWalls(triangles, x, v, low, high, skip)) return;
+                      std::span<const std::uint8_t> skip, bool stood) {
+  if (sameWalls(triangles, x, v, low, high, skip, stood)) return;
   const Vec3 room = Vec3::Constant(spacing_m_);
   rebuild(triangles, x, v, {low - room, high + room}, skip);
 }

@@ -72,10 +72,11 @@ class WallField {
   WallField(const KernelTable& table, double spacing_m);
 
   /// Takes the triangles within reach of the box [low, high], cut where they are large, but none
-  /// that `skip` marks ([triangle], may be empty).
+  /// that `skip` marks ([triangle], may be empty). `stood`: walls are known to be as in the last
+  /// call.
   void build(std::span<const Triangle> triangles, std::span<const Vec3> positions,
              std::span<const Vec3> velocities, const Vec3& low, const Vec3& high,
-             std::span<const std::uint8_t> skip = {});
+             std::span<const std::uint8_t> skip = {}, bool stood = false);
 
   /// The box that the last build reached out from; `rebuild` in the same one gives the same bits.
   struct Box {
@@ -108,7 +109,7 @@ class WallField {
                   const Vec3& vc, int triangle) const;
   bool sameWalls(std::span<const Triangle> triangles, std::span<const Vec3> positions,
                  std::span<const Vec3> velocities, const Vec3& low, const Vec3& high,
-                 std::span<const std::uint8_t> skip);
+                 std::span<const std::uint8_t> skip, bool stood = false);
   void sortPieces();
 
   const KernelTable* table_;
