@@ -345,6 +345,7 @@ void Solver::Impl::coatWalls(const Substep& step) {
   for (const int i : coating.update(scene)) {
     particles.state[i] = State::coating;
     particles.velocities[i].setZero();
+    particles.densityRatio[i] = 1;
     contacts[i].clear();
     active[i] = 0;
     walls[i] = held[i].sample = {};
