@@ -9,9 +9,6 @@ namespace {
 // Quadrature points by a piece's longest edge in spacings: the same relative error at every
 // resolution (wall_field_test). Longer triangles are cut.
 constexpr double kOnePoint = 0.35, kThreePoints = 1.5, kLongestEdge = 2;
-// Cells of the grid as a share of how far the centroid of a piece within reach can be, assumed (0.3
-// to 1): smaller ones hold less that is out of reach, in more rows.
-constexpr double kCell = 1;
 constexpr int kMaxCuts = 6;              // a triangle becomes at most 4^6 pieces
 constexpr double kEmptyArea_m2 = 1e-16;  // slivers without a usable normal
 // Nearer than this the wall shear no longer grows: 0.3 spacings, assumed (0.2 to 0.5), the order
@@ -176,7 +173,7 @@ void WallField::rebuild(std::span<const Triangle> triangles, std::span<const Vec
     addPiece(makePiece(a, b, c, v[t[0]], v[t[1]], v[t[2]], k), 0);
   }
   low_ = built_.low;
-  grid_.build(centroids_, {}, kCell * (table_->support_m() + largestRadius_m_));
+  grid_.build(centroids_, {}, table_->support_m() + largestRadius_m_);
   sortPieces();
 }
 

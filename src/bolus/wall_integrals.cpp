@@ -87,6 +87,23 @@ SC_INLINE F8 dot(const V& a, const V& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// Eight pieces, their corners from o.
+struct Records {
+  V a, b, c, normal, velocity;
+  F8 area;
+};
+SC_INLINE Records recordsFrom(const PieceArrays& p, const int* at, const F8 (&o)[3]) {
+  F8 first[8], second[8];
+  gather8<PieceArrays::kRecord>(p.records.data(), at, first);
+  gather8<PieceArrays::kRecord>(p.records.data() + 8, at, second);
+  return {{first[0] - o[0], first[1] - o[1], first[2] - o[2]},
+          {first[3] - o[0], first[4] - o[1], first[5] - o[2]},
+          {first[6] - o[0], first[7] - o[1], second[0] - o[2]},
+          {second[1], second[2], second[3]},
+          {second[4], second[5], second[6]},
+          second[7]};
+}
+
 SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, int begin, int end,
                           float support, int* out, int* lists, WallSums& sums) {
   using P = PieceArrays;
@@ -140,14 +157,8 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
       const bool close = list >= NearPieces::kRules;
       const Rule& rule = kRules[list % NearPieces::kRules];
       const int* at = &pieces.of[list][k];
-      F8 first[8], second[8];
-      gather8<P::kRecord>(p.records.data(), at, first);
-      gather8<P::kRecord>(p.records.data() + 8, at, second);
-      const V a{first[0] - o[0], first[1] - o[1], first[2] - o[2]};
-      const V b{first[3] - o[0], first[4] - o[1], first[5] - o[2]};
-      const V c{first[6] - o[0], first[7] - o[1], second[0] - o[2]};
-      const V n{second[1], second[2], second[3]}, v{second[4], second[5], second[6]};
-      const F8 pieceArea = second[7], third = all(1.f / 3);
+      const auto [a, b, c, n, v, pieceArea] = recordsFrom(p, at, o);
+      const F8 third = all(1.f / 3);
       const V centre{(a.x + b.x + c.x) * third, (a.y + b.y + c.y) * third,
                      (a.z + b.z + c.z) * third};
       const F8 offset = dot(a, n);  // r . n, the same all over the piece
@@ -245,18 +256,11 @@ SC_INLINE F8 outside(const V& e, const V& n, const V& a) {
 
 SC_CLONES void nearestPoints(const PieceArrays& p, float px, float py, float pz, float reach2,
                              NearPoints& out) {
-  using P = PieceArrays;
   const F8 o[3] = {all(px), all(py), all(pz)}, zero = all(0);
   int found = 0;
   for (int k = 0; k < out.candidateCount; k += kLanes) {
     const int* at = &out.candidates[k];
-    F8 first[8], second[8];
-    gather8<P::kRecord>(p.records.data(), at, first);
-    gather8<P::kRecord>(p.records.data() + 8, at, second);
-    const V a{first[0] - o[0], first[1] - o[1], first[2] - o[2]};
-    const V b{first[3] - o[0], first[4] - o[1], first[5] - o[2]};
-    const V c{first[6] - o[0], first[7] - o[1], second[0] - o[2]};
-    const V n{second[1], second[2], second[3]};
+    const auto [a, b, c, n, v, area] = recordsFrom(p, at, o);
     const V ab = minus(b, a), bc = minus(c, b), ca = minus(a, c);
     const F8 offset = dot(a, n);
     V q{n.x * offset, n.y * offset, n.z * offset};
