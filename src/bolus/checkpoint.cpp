@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000006;  // "SWBC", layout 6
+constexpr std::uint64_t kMark = 0x53574243'00000007;  // "SWBC", layout 7
 
 class Writer {
  public:
@@ -94,6 +94,7 @@ void all(Archive& a, Impl& s) {
   a(s.viscosity.shearRates().own_s);
   a(s.viscosity.shearRates().wall_s);
   a(s.viscosity.drags_ms2());
+  a(s.viscosity.waiting());
   a(s.wallTriangles);
   a(s.caps);
   a(s.shutBefore);
@@ -187,6 +188,7 @@ Result<void> Solver::restore(std::string_view bytes) {
   if (!in.fine || !in.atEnd()) return refuse("its arrays do not fit");
   s.motion->at(s.time_s, s.wallPositions, s.wallVelocities);
   s.field.rebuild(s.wallTriangles, s.wallPositions, s.wallVelocities, box, s.skipped);
+  s.wallsStood = false;
   s.lastNearest.assign(s.active.size(), -1);
   s.gap_m.resize(n);
   for (std::size_t i = 0; i < n; ++i) s.gap_m[i] = localGap_m(s.contacts[i]);

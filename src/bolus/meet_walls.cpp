@@ -31,8 +31,6 @@ constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up 
 }  // namespace
 
 void Solver::Impl::evaluateWalls(double t_s) {
-  motion->at(t_s, wallPositions, wallVelocities);
-  if (frozen) std::fill(wallVelocities.begin(), wallVelocities.end(), Vec3::Zero());
   Vec3 low = Vec3::Constant(INFINITY), high = -low;
   for (std::size_t i = 0; i < particles.positions.size(); ++i) {
     if (isGone(particles.state[i])) continue;
@@ -40,15 +38,22 @@ void Solver::Impl::evaluateWalls(double t_s) {
     high = high.cwiseMax(particles.positions[i]);
   }
   const bool stood = fastestWall_ms == 0;
+  if (!wallsStood || !(motion->standsStill || (frozen && t_s == wallsAt_s))) lookAtWalls(t_s);
+  shutBranches(t_s);
+  field.build(wallTriangles, wallPositions, wallVelocities, low, high, skipped,
+              stood && wallsStood);
+}
+
+void Solver::Impl::lookAtWalls(double t_s) {
+  wallsAt_s = t_s;
+  motion->at(t_s, wallPositions, wallVelocities);
+  if (frozen) std::fill(wallVelocities.begin(), wallVelocities.end(), Vec3::Zero());
   fastestWall_ms = 0;
   for (const Vec3& v : wallVelocities) fastestWall_ms = std::max(fastestWall_ms, v.squaredNorm());
   fastestWall_ms = std::sqrt(fastestWall_ms);
   const bool samePlaces = wallPositions == wallsBefore;
   wallsStood = fastestWall_ms == 0 && samePlaces;
   if (!samePlaces) wallsBefore = wallPositions;
-  shutBranches(t_s);
-  field.build(wallTriangles, wallPositions, wallVelocities, low, high, skipped,
-              stood && wallsStood);
 }
 
 // A branch shut lip to lip and empty is no wall: the tube goes, a cap closes the slit it leaves.

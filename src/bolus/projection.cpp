@@ -125,7 +125,7 @@ PressureSweep Projection::pressureOf(const Flow& f, const std::vector<float>& k)
   return {f.lists(), k.data(), mobility_.data(), wall_.data(), acceleration_.data()};
 }
 
-/// source(slot, rate of rho* in 1/s) into source_; with `pushes`, what the first pressure does,
+/// source(particle, rate of rho* in 1/s) into source_; with `pushes`, what the first pressure does,
 /// too.
 template <class Source>
 void Projection::findSource(const Flow& f, const std::vector<Vec3>& v, bool pushes,
@@ -136,12 +136,14 @@ void Projection::findSource(const Flow& f, const std::vector<Vec3>& v, bool push
   f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
     Asked asked;
+    float* const out = source_.data();
     for (int i = begin; i < end; ++i) {
-      const int p = f.particle(i);
-      const float rate = source_[i] + static_cast<float>(v[p].dot(wall_.at(i).cast<double>()) -
-                                                         kWallMirror * f.wall(i).flux_s);
-      source_[i] = static_cast<float>(source(i, static_cast<double>(rate)));
-      asked.add(source_[i], full);
+      float rate = out[i];
+      if (f.beside[i])
+        rate += static_cast<float>(v[f.particle(i)].dot(wall_.at(i).cast<double>()) -
+                                   kWallMirror * f.wall(i).flux_s);
+      out[i] = static_cast<float>(source(f.particle(i), static_cast<double>(rate)));
+      asked.add(out[i], full);
     }
     asked_[chunk] = asked;
     if (pushes) findAccelerations(pressure, begin, end);
@@ -237,11 +239,13 @@ void Projection::accelerate(const Flow& f, double dt_s, std::vector<Vec3>& v, co
 ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<double>& density,
                                             double dt_s, std::vector<Vec3>& v, const Range& then) {
   // what is still below rest density may close up; nothing is pulled apart
-  findSource(f, v, kLeastRate > 0, [&](int i, double rate_s) {
-    const double room = std::max(0.0, 1 - density[f.particle(i)]);
-    const double open =
-        full ? 0 : std::max(0.0, room - kOpening) / dt_s + std::min(room, kOpening) / kSettle_s;
-    return (rate_s - open) / dt_s;
+  const double perStep = 1 / dt_s;
+  findSource(f, v, kLeastRate > 0, [&, rho = density.data()](int p, double rate_s) {
+    const double room = std::max(0.0, 1 - rho[p]);
+    const double open = full ? 0
+                             : std::max(0.0, room - kOpening) * perStep +
+                                   std::min(room, kOpening) * (1 / kSettle_s);
+    return (rate_s - open) * perStep;
   });
   const ProjectionReport report = project(f, dt_s, kLeastRate, kRateCap, tolerances.rate, rateK_);
   accelerate(f, dt_s, v, then);
@@ -250,9 +254,9 @@ ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<dou
 
 ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<double>& density,
                                              double dt_s, std::vector<Vec3>& v) {
-  const double within_s = std::max(dt_s, kCorrection_s);
-  findSource(f, v, kLeastDensity > 0, [&](int i, double rate_s) {
-    return (rate_s + (density[f.particle(i)] - 1) / within_s) / dt_s;
+  const double perStep = 1 / dt_s, perCorrection = 1 / std::max(dt_s, kCorrection_s);
+  findSource(f, v, kLeastDensity > 0, [=, rho = density.data()](int p, double rate_s) {
+    return (rate_s + (rho[p] - 1) * perCorrection) * perStep;
   });
   const ProjectionReport report =
       project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, densityK_);

@@ -26,6 +26,8 @@ inline constexpr int kSweepChunk = 64;  ///< slots per work item of a neighbour 
 /// Sweeps over fewer slots than this take less time than waking a thread, assumed (100 to 300).
 inline constexpr int kSweepAlone = 200;
 
+inline const WallSample kNoWall;
+
 /// What one step works on. Arrays are [particle] unless they say slot.
 struct Flow {
   const Neighbours& neighbours;
@@ -42,8 +44,7 @@ struct Flow {
   int particle(int slot) const { return neighbours.id[slot]; }
   /// Most are far from walls, and theirs need not be fetched.
   const WallSample& wall(int slot) const {
-    static const WallSample kNone;
-    return beside[slot] ? walls[particle(slot)] : kNone;
+    return beside[slot] ? walls[particle(slot)] : kNoWall;
   }
 };
 

@@ -46,6 +46,7 @@ struct Solver::Impl {
   void finishFrame();  ///< path coordinates of all particles, escape check
 
   void evaluateWalls(double t_s);
+  void lookAtWalls(double t_s);
   void shutBranches(double t_s);
   void wrapPeriods();
   void sortParticles(std::vector<double>& more);  ///< `more`: a caller's own array of them
@@ -104,6 +105,7 @@ struct Solver::Impl {
   std::vector<Held> held;  // where and when the walls of a particle were last integrated
   double fastestWall_ms = 0;
   std::vector<Vec3> contactsAt, wallsBefore;   // places where contacts were last looked for; walls
+  double wallsAt_s = 0;                        // when they were last looked at
   bool wallsStood = false;                     // since the last step
   std::vector<std::pair<Vec3, Vec3>> carried;  // place and velocity had it only moved with its wall
   TriangleRuns runs;                           // of the skin as it is
@@ -118,6 +120,7 @@ struct Solver::Impl {
     std::vector<Vec3> velocities;
     std::vector<double> rate, density;
     Viscosity::ShearRates shear;
+    Viscosity::Waiting waiting;
   } kept;                            // a step, should it be taken again
   std::vector<std::uint8_t> caught;  // [particle] by the walls' shape: film
   std::vector<Vec3> moving;  // velocities, and what the density left above rest adds to them

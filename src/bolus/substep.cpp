@@ -59,6 +59,7 @@ Solver::Impl::Impl(const BolusDef& d, const WallMotion& m, int threads)
 void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3> velocities) {
   const std::size_t n = places.size();
   number.clear();
+  wallsStood = false;
   outside = {};
   particles.positions = std::move(places);
   particles.velocities = std::move(velocities);
@@ -212,6 +213,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
   kept.rate = projection.rateWarm();
   kept.density = projection.densityWarm();
   kept.shear = viscosity.shearRates();
+  kept.waiting = viscosity.waiting();
   outran.assign(neighbours.count, 0);
   for (const double least_s = kShortestRetry * dt_s;; dt_s /= 2) {
     project(dt_s, report);
@@ -221,6 +223,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
     projection.rateWarm() = kept.rate;
     projection.densityWarm() = kept.density;
     viscosity.shearRates() = kept.shear;
+    viscosity.waiting() = kept.waiting;
   }
 }
 
@@ -312,24 +315,30 @@ void Solver::Impl::move(double dt_s, Substep& report) {
 }
 
 void Solver::Impl::measure(Substep& s) {
-  double mean = 0, taking = 0;
-  for (std::size_t i = 0; def.full && i < active.size(); ++i) {
-    mean += active[i] ? particles.densityRatio[i] : 0;
-    taking += active[i];
+  double rest = 1, sum = 0, most = -1;  // names of their own: through a reference they are slow
+  int taking = 0, aboveTen = 0, worst = -1;
+  for (std::size_t i = 0; i < active.size(); ++i) taking += active[i];
+  if (def.full && taking > 0) {
+    for (std::size_t i = 0; i < active.size(); ++i)
+      sum += active[i] ? particles.densityRatio[i] : 0;
+    rest = sum / taking;
+    sum = 0;
   }
-  mean /= std::max(taking, 1.0);
   for (std::size_t i = 0; i < active.size(); ++i) {
     if (!active[i]) continue;
-    const double error = std::max(0.0, particles.densityRatio[i] - (def.full ? mean : 1));
-    ++s.fluidCount;
-    s.meanError += error;
-    s.aboveTenPercent += error > 0.1;
-    if (error > s.maxError || s.worst < 0) {
-      s.maxError = error;
-      s.worst = static_cast<int>(i);
+    const double error = std::max(0.0, particles.densityRatio[i] - rest);
+    sum += error;
+    aboveTen += error > 0.1;
+    if (error > most) {
+      most = error;
+      worst = static_cast<int>(i);
     }
   }
-  if (s.fluidCount > 0) s.meanError /= s.fluidCount;
+  s.fluidCount = taking;
+  s.meanError = taking > 0 ? sum / taking : 0;
+  s.maxError = std::max(0.0, most);
+  s.worst = worst;
+  s.aboveTenPercent = aboveTen;
   // a few particles on their way to being film are no reason
   const double weight = std::min(1.0, 10.0 * s.fluidCount / static_cast<double>(active.size()));
   const bool rough = def.adaptsStep && !compressible() &&

@@ -27,6 +27,8 @@ constexpr double kExplicitShare = 0.0625;
 // Where neighbours exchange no more than this share of their velocities in a step, one sweep leaves
 // its square of them, as little as kTolerance: thin fluids need no solve.
 constexpr float kLittleExchange = 0.01f;
+// And while it stays that little, in one step for up to this many. Assumed (2 to 8).
+constexpr int kMostSteps = 4;
 // Share of the kernel beyond walls, counted at most, assumed (0.4 to 0.6): an edge has 0.4.
 constexpr double kMostLambda = 0.5;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
@@ -53,7 +55,11 @@ Mat3 velocityGradient_s(const Flow& f, const SlopeSweep& slopes, const Vec3& v, 
   }
   // What the same sums make of a linear field (Bonet & Lok 1999, sec. 3.3): among disordered
   // particles 10 % off, which a stiff plug would take for shear.
-  return moment.determinant() > kLeastMoment ? Mat3(gradient * moment.inverse()) : gradient;
+  Mat3 inverse;
+  double determinant = 0;
+  bool fine = false;
+  moment.computeInverseAndDetWithCheck(inverse, determinant, fine, kLeastMoment);
+  return fine && determinant > 0 ? Mat3(gradient * inverse) : gradient;
 }
 Mat3 gradientBeforeWall_s(const WallSample& w, const Vec3& v, const Mat3& gradient) {
   const double steep = w.gradLambda.norm();
@@ -98,6 +104,9 @@ void Viscosity::begin(Step& s) {
   else if (s.fluid.model == RheologyModel::newtonian)
     s.constant_Pas = s.fluid.viscosity_Pas;
   if (s.constant_Pas == 0) findRates(f, s.velocities);
+  waiting_.since_s += s.dt_s;
+  ++waiting_.steps;
+  s.pairs_s = canWait(s) ? 0 : waiting_.since_s;
   for (auto* a : {&viscosity_, &inertia_}) a->resize(n);
   force_.resize(3 * n);
   right_.resize(n);
@@ -110,6 +119,12 @@ void Viscosity::begin(Step& s) {
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
 }
 
+// Whether even after one more step it would be little.
+bool Viscosity::canWait(const Step& s) const {
+  return !s.scheme.explicitWhereStable && waiting_.steps < kMostSteps && waiting_.rate_s > 0 &&
+         waiting_.rate_s * (waiting_.since_s + s.dt_s) < kLittleExchange;
+}
+
 // All that a slot has to itself.
 void Viscosity::prepare(const Step& s, int begin, int end) {
   const auto viscosityAt = [&](double rate_s) {
@@ -120,7 +135,7 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
     const WallSample& w = s.flow.wall(i);
     viscosity_[i] = viscosityAt(shearRates_.own_s[p]);
     mu_[i] = static_cast<float>(viscosity_[i]);
-    evenOut(w, s.flow.neighbours.moment[i], evenness_[i]);
+    if (s.pairs_s > 0) evenOut(w, s.flow.neighbours.moment[i], evenness_[i]);
     inertia_[i] = s.scheme.slip ? 1 : 1 - std::min(w.lambda, kMostLambda);
     right_[i] = s.velocities[p];
     if (w.friction > 0) {
@@ -147,7 +162,7 @@ float Viscosity::weighPairs(const Step& s) {
       f.neighbours.r.data(),
       mu_.data(),
       evenness_.of.data(),
-      static_cast<float>(s.dt_s / s.fluid.density_kgm3),  // 2, and half of two evennesses
+      static_cast<float>(s.pairs_s / s.fluid.density_kgm3),  // 2, and half of two evennesses
       static_cast<float>(s.scheme.leastPair_Pas),
       static_cast<float>(kSoftening * s.support_m * s.support_m / 4),
       static_cast<float>(kLeastPairShare),
@@ -274,15 +289,20 @@ void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
 }
 
 Viscosity::Report Viscosity::exchange(const Step& s) {
-  if (weighPairs(s) < kLittleExchange || isStableExplicitly(s)) return {};
+  if (s.pairs_s == 0) return {};
+  const float most = weighPairs(s);
+  waiting_ = {.rate_s = most / s.pairs_s};
+  if (most < kLittleExchange || isStableExplicitly(s)) return {};
   return solve(s);
 }
 
 // The solution enters only through the antisymmetric pair terms, so that momentum is kept to double
 // precision however far the solve went.
 void Viscosity::rub(const Step& s, int begin, int end) {
-  const DragSweep drag{s.flow.lists(), pair_.data(), v_.data(), force_.data()};
-  drag.run(begin, end);
+  if (s.pairs_s > 0)
+    DragSweep{s.flow.lists(), pair_.data(), v_.data(), force_.data()}.run(begin, end);
+  else
+    std::fill(&force_[0] + 3 * begin, &force_[0] + 3 * end, 0.0);
   for (int i = begin; i < end; ++i) {
     const int p = s.flow.particle(i);
     const Vec3 next = (right_[i] - Vec3(&force_[3 * i])) / (inertia_[i] * (1 + wallDrag_[p]));

@@ -12,6 +12,7 @@
 // On a cubic lattice it gives 1.01 of the viscosity; the form that also keeps angular momentum
 // (Monaghan 2005: 10 v.x / r^2 gradW) gives 0.71 of it with so few neighbours.
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "bolus/fluid.h"
@@ -46,6 +47,7 @@ class Viscosity {
     double dt_s, support_m;
     std::vector<Vec3>& velocities;
     double constant_Pas = 0;  ///< 0: by the shear rate; `begin` finds it
+    double pairs_s = 0;       ///< how long neighbours rub on each other now; 0: not in this step
   };
   void begin(Step& step);
   void prepare(const Step& step, int begin, int end);
@@ -67,6 +69,15 @@ class Viscosity {
   };
   ShearRates& shearRates() { return shearRates_; }
 
+  /// Neighbours of a thin fluid that exchange next to nothing in a step do it once in a few, for
+  /// all of that time (multiple time steps, Tuckerman et al. 1992).
+  struct Waiting {
+    double since_s = 0;  ///< how long they have not
+    std::int64_t steps = 0;
+    double rate_s = 0;  ///< largest share of their velocities per time, 1/s; 0: not known
+  };
+  Waiting& waiting() { return waiting_; }
+
   /// [particle] acceleration by the last step's viscosity: where the next solve starts from.
   std::vector<Vec3>& drags_ms2() { return drag_ms2_; }
 
@@ -75,10 +86,12 @@ class Viscosity {
   float weighPairs(const Step& step);
   void findRates(const Flow& flow, const std::vector<Vec3>& velocities);
   static void evenOut(const WallSample& wall, const float* moment, float* even);
+  bool canWait(const Step& step) const;
   bool isStableExplicitly(const Step& step) const;
   Report solve(const Step& step);
 
   ShearRates shearRates_;
+  Waiting waiting_;
   std::vector<Vec3> drag_ms2_;               // [particle]
   std::vector<double> wallDrag_;             // [particle]
   std::vector<double> viscosity_, force_;    // [slot]; [slot][3]

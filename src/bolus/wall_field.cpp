@@ -14,8 +14,6 @@ constexpr double kEmptyArea_m2 = 1e-16;  // slivers without a usable normal
 // Nearer than this the wall shear no longer grows: 0.3 spacings, assumed (0.2 to 0.5), the order
 // of the distance at which particles rest.
 constexpr double kLeastShearDistance = 0.3;
-constexpr float kSameDirection = 0.95f;   // cosine above which two contacts say the same
-constexpr float kSeenFromBehind = 1e-6f;  // cosine, rounding of what lies in the plane of a piece
 
 double cornerAngle(const Vec3& at, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - at, v = c - at;
@@ -313,24 +311,7 @@ void WallField::contacts(const Vec3& p, double radius_m, std::vector<Contact>& o
     if (side < 0 || static_cast<int>(out.size()) == kMaxContacts) return;
     // Of the others none that lies the same way, nor one seen from behind: other tissue in between.
     const Vec3f in = inward.cast<float>();
-    int left = 0;
-    for (int k = 0; k < near.count; ++k) {
-      const Vec3f way = -Vec3f(near.x[k], near.y[k], near.z[k]);
-      const float away = std::sqrt(near.away2[k]);
-      const int piece = near.piece[k];
-      const float behind = way.x() * arrays_.at(PieceArrays::kNx)[piece] +
-                           way.y() * arrays_.at(PieceArrays::kNy)[piece] +
-                           way.z() * arrays_.at(PieceArrays::kNz)[piece];
-      if (!(away > static_cast<float>(same)) || behind > kSeenFromBehind * away ||
-          way.dot(in) > kSameDirection * away)
-        continue;
-      near.piece[left] = piece;
-      near.x[left] = near.x[k];
-      near.y[left] = near.y[k];
-      near.z[left] = near.z[k];
-      near.away2[left++] = near.away2[k];
-    }
-    near.count = left;
+    keepOthers(near, static_cast<float>(same), {in.x(), in.y(), in.z()});
     if (near.count == 0) return;
     h = hitOn(
         near.piece[std::min_element(&near.away2[0], &near.away2[0] + near.count) - &near.away2[0]]);

@@ -279,9 +279,32 @@ SC_CLONES void nearestPoints(const PieceArrays& p, float px, float py, float pz,
     putValues(near, q.x, &out.x[found]);
     putValues(near, q.y, &out.y[found]);
     putValues(near, q.z, &out.z[found]);
+    putValues(near, all(0) - dot(q, n), &out.plane[found]);
     found += putValues(near, away2, &out.away2[found]);
   }
   out.count = found;
+}
+
+constexpr float kSameDirection = 0.95f;   // cosine above which two contacts say the same
+constexpr float kSeenFromBehind = 1e-6f;  // cosine, rounding of what lies in the plane of a piece
+
+SC_CLONES int othersOf(NearPoints& p, float least, float ix, float iy, float iz) {
+  int left = 0;
+  for (int k = 0; k < p.count; k += kLanes) {
+    const F8 x = load(&p.x[k]), y = load(&p.y[k]), z = load(&p.z[k]), plane = load(&p.plane[k]);
+    const F8 away2 = load(&p.away2[k]), away = root(away2);
+    const F8 same = all(0) - (x * all(ix) + y * all(iy) + z * all(iz));
+    const I8 other = (away > all(least)) & (plane <= all(kSeenFromBehind) * away) &
+                     (same <= all(kSameDirection) * away) & (kCount < allInt(p.count - k));
+    const I8 piece = loadInt(&p.piece[k]);
+    putValues(other, piece, &p.piece[left]);
+    putValues(other, x, &p.x[left]);
+    putValues(other, y, &p.y[left]);
+    putValues(other, z, &p.z[left]);
+    putValues(other, plane, &p.plane[left]);
+    left += putValues(other, away2, &p.away2[left]);
+  }
+  return left;
 }
 
 SC_CLONES int candidates(const PieceArrays& p, float px, float py, float pz, float reach,
@@ -339,9 +362,13 @@ void findPoints(const PieceArrays& pieces, float x, float y, float z, float reac
   const std::size_t most = near.candidateCount + kLanes;
   if (near.piece.size() < most) {
     near.piece.resize(2 * most);
-    for (auto* a : {&near.x, &near.y, &near.z, &near.away2}) a->resize(2 * most);
+    for (auto* a : {&near.x, &near.y, &near.z, &near.away2, &near.plane}) a->resize(2 * most);
   }
   std::fill_n(near.candidates.begin() + near.candidateCount, kLanes - 1, pieces.count);  // no piece
   nearestPoints(pieces, x, y, z, reach_m * reach_m, near);
+}
+
+void keepOthers(NearPoints& near, float least_m, const std::array<float, 3>& inward) {
+  near.count = othersOf(near, least_m, inward[0], inward[1], inward[2]);
 }
 }  // namespace swallowclip::bolus

@@ -68,6 +68,7 @@ struct WallQuadrature {
 struct NearPoints {
   std::vector<int> piece, candidates;
   std::vector<float> x, y, z, away2;  // m, m^2
+  std::vector<float> plane;           ///< how far behind the piece's plane the particle is, m
   int count = 0, candidateCount = 0;
   void clear() { count = candidateCount = 0; }
 };
@@ -77,4 +78,7 @@ void lookForPoints(const PieceArrays& pieces, float x, float y, float z, float r
                    float support_m, int begin, int end, NearPoints& near);
 void findPoints(const PieceArrays& pieces, float x, float y, float z, float reach_m,
                 NearPoints& near);
+/// Keeps those farther than `least_m` whose wall is not seen from behind and that do not lie the
+/// same way as the unit vector `inward` points back.
+void keepOthers(NearPoints& near, float least_m, const std::array<float, 3>& inward);
 }  // namespace swallowclip::bolus

@@ -21,6 +21,7 @@ struct WallMotion {
   /// Positions (m) and velocities (m/s) of all vertices at time t (s). Velocity is the exact time
   /// derivative of position; position is C1 in t.
   std::function<void(double t_s, std::vector<Vec3>& positions, std::vector<Vec3>& velocities)> at;
+  bool standsStill = false;  ///< at any time as at any other
   /// True while the mouth of a branch (1 or 2) is shut lip to lip; may be empty. Its tube is then
   /// no wall for fluid outside it: the lips meet, nothing flows into the slit between them.
   std::function<bool(double t_s, int branch)> sealed;

@@ -199,6 +199,7 @@ Result<Domain> Domain::build(const CaseDef& def, double spacing_m) {
   switch (motion.kind) {
     case MotionKind::still:
       d.walls_->at = still(mesh.positions);
+      d.walls_->standsStill = true;
       break;
     case MotionKind::slide:
       d.walls_->at = slide(mesh.positions, motion, motion.high ? high : 0);
