@@ -68,6 +68,7 @@ template <class Archive, class Impl>
 void all(Archive& a, Impl& s) {
   a(s.time_s);
   a(s.stepShare);
+  a(s.reach_s);
   a(s.infeasible_s);
   a(s.stats);
   a(s.errorSum);

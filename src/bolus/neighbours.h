@@ -23,7 +23,7 @@ struct Neighbours {
   int count = 0;                  ///< slots
   std::vector<int> id;            ///< [count] particle of a slot
   std::vector<int> slot;          ///< [particle] its slot, or -1
-  std::vector<int> start, stop;   ///< [count + 1], [count] of each list, in whole vectors (kLanes)
+  std::vector<int> start, stop;   ///< [count] of each list, in whole vectors (kLanes)
   std::vector<int> index;         ///< slots of the neighbours
   std::vector<float> gx, gy, gz;  ///< V gradW(x_i - x_j) at x_i (1/m)
   std::vector<float> r;           ///< distances, m
@@ -59,12 +59,18 @@ struct Neighbours {
   void around(const Vec3& p, std::vector<Near>& out) const;
 
  private:
+  static constexpr int kChunk = 64;          // particles per work item
+  static constexpr int kPlacesAlone = 1000;  // are set sooner than a thread wakes, assumed (500 to
+                                             // 2000)
+  static constexpr float kFarAway = 1e18f;   // m; fills vectors up, its square is still a number
+
   struct Found {
     std::vector<int> places, length;
   };
   void sortIntoCells(std::span<const Vec3> points, std::span<const std::uint8_t> take,
                      double cell_m, const Vec3& period_m, ThreadPool& pool);
   void search(int begin, int end, float reach_m, Found& out) const;
+  int pickNear(int begin, int end);
   void measure(const KernelTable& kernel, double volume_m3, ThreadPool& pool, const Range& then);
 
   int cellAlong(float x_m, int axis) const {
@@ -84,6 +90,8 @@ struct Neighbours {
   Floats3 places_;                             // [place] now
   std::vector<Vec3> builtAt_;                  // [count]
   std::vector<Found> found_;
-  std::vector<int> candidates_;  // places, as `index`
+  // places: who might be a neighbour, from candidateStart_ [count + 1] on; who is, of a chunk one
+  // behind the other
+  std::vector<int> candidates_, candidateStart_, near_;
 };
 }  // namespace swallowclip::bolus

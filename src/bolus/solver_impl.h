@@ -115,7 +115,7 @@ struct Solver::Impl {
   std::vector<std::uint8_t> active;  // takes part in the pressure solve
   Neighbours neighbours;
   std::vector<std::uint8_t> beside;  // see Flow
-  std::vector<std::uint8_t> outran;  // [slot] faster than its contacts reach
+  std::vector<float> reached;        // [slot] square of its speed, m^2/s^2
   struct {
     std::vector<Vec3> velocities;
     std::vector<double> rate, density;
@@ -141,8 +141,9 @@ struct Solver::Impl {
   double time_s = 0, lastStep_s = 0;
   bool frozen = false;  // walls stand still (settling)
   double settlingViscosity_Pas = 0;
-  double stepShare = 1;     // of the step that speeds allow, less while steps leave compression
-  double infeasible_s = 0;  // how long the pocket has been too small
+  double reach_s = INFINITY;  // longest step that contacts reach, where that is what limits it
+  double stepShare = 1;       // of the step that speeds allow, less while steps leave compression
+  double infeasible_s = 0;    // how long the pocket has been too small
   Stats stats;
   double errorSum = 0, errorCount = 0, aboveTenCount = 0;
   int escapedNow = 0;
