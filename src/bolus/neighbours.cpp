@@ -240,8 +240,12 @@ bool Neighbours::follow(std::span<const Vec3> points, std::span<const std::uint8
 // goes.
 int Neighbours::pickNear(int begin, int end) {
   const float reach = static_cast<float>(support_m_);
-  int* const out = &near_[candidateStart_[begin]];
   int n = 0;
+  if (skin_m_ == 0) {  // candidates are no others
+    for (int i = begin; i < end; ++i) stop[i] = n = candidateStart_[i + 1] - candidateStart_[begin];
+    return n;
+  }
+  int* const out = &near_[candidateStart_[begin]];
   for (int i = begin; i < end; ++i) {
     const int first = candidateStart_[i];
     n += stillWithin(places_.data(), places_[self_[i]], &candidates_[first],
@@ -258,7 +262,7 @@ void Neighbours::measure(const KernelTable& kernel, double volume_m3, ThreadPool
   const float volume = static_cast<float>(volume_m3);
   const bool images = static_cast<int>(shift_.size()) > count;  // else slots are places
   const auto measureAt = [&](int begin, int end, int at) {
-    const int* const near = &near_[candidateStart_[begin]];
+    const int* const near = &(skin_m_ == 0 ? candidates_ : near_)[candidateStart_[begin]];
     for (int i = begin, from = 0; i < end; ++i) {
       const int first = at + from, n = stop[i] - from;
       if (images)
