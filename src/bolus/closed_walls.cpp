@@ -91,6 +91,7 @@ void ColumnIndex::build(std::span<const Triangle> triangles, std::span<const Vec
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
+  if (positions.empty()) low = high = Vec3::Zero();  // no walls, and nothing inside of them
   low_ = low;
   constexpr int kAcross = 64;  // columns across the longer side, assumed (32 to 256)
   cell_m_ = std::max((high - low).head<2>().maxCoeff() / kAcross, 1e-9);
