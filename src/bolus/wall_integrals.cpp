@@ -51,6 +51,8 @@ constexpr float kFarSpacings[] = {1, 1, 0};
 // Beyond this many supports the kernel is small on all of a piece, and three points do for seven:
 // grad lambda within 3e-4 over a spacing instead of 1.2e-4 (triangles of 1.9 spacings).
 constexpr float kFewPoints = 1.05f;
+constexpr float kSameDirection = 0.95f;   // cosine above which two contacts say the same
+constexpr float kSeenFromBehind = 1e-6f;  // cosine, rounding of what lies in the plane of a piece
 constexpr float kPif = static_cast<float>(kPi);
 }  // namespace
 
@@ -284,9 +286,6 @@ SC_CLONES void nearestPoints(const PieceArrays& p, float px, float py, float pz,
   }
   out.count = found;
 }
-
-constexpr float kSameDirection = 0.95f;   // cosine above which two contacts say the same
-constexpr float kSeenFromBehind = 1e-6f;  // cosine, rounding of what lies in the plane of a piece
 
 SC_CLONES int othersOf(NearPoints& p, float least, float ix, float iy, float iz) {
   int left = 0;

@@ -119,9 +119,7 @@ Result<void> bench(const pipeline::RunOptions& options, pipeline::Progress& prog
   progress.stage("timing");
   progress.print(fmt::format(
       "Seconds per simulated second, set-up excluded, {} thread(s). Calibration loop: {:.2f} ns a "
-      "pair in one thread; beside each row (loop) in all at once, just before it. Each: a "
-      "particle's "
-      "step.\n"
+      "pair in one thread; beside each row (loop) in all at once. Each: a particle's step.\n"
       "{:>8} {:>9} {:>8} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>9} {:>8} {:>9} {:>10}\n",
       options.jobs, calibration_ns(1), "spacing", "particles", "Pa.s", "tolerance", "wall", "cpu",
       "peer", "faster", "loop/ns", "each/us", "steps", "error", "iterations"));
@@ -137,8 +135,7 @@ Result<void> bench(const pipeline::RunOptions& options, pipeline::Progress& prog
     const double each_us = m->wall_s * row.duration_s * each / m->particles * 1e6;
     progress.print(fmt::format(
         "{:>5} mm {:>9} {:>8} {:>7.2f} % {:>8.3g} {:>8.3g} {:>8.3g} {:>6.1f}x {:>7.2f} {:>9.3f} "
-        "{:>8} {:>7.3f} % "
-        "{:>10}\n",
+        "{:>8} {:>7.3f} % {:>10}\n",
         row.spacing_mm, m->particles, row.viscosity_Pas, row.tolerance * 100, m->wall_s, m->cpu_s,
         row.peer_s, row.peer_s / m->wall_s, calibration, each_us, s.steps, s.meanDensityError * 100,
         fmt::format("{:.1f}+{:.1f}+{:.1f}", static_cast<double>(s.densityIterations) * each,
