@@ -40,7 +40,7 @@ void fillParser(Parser& parser) {
       if (row.many)
         option->expected(1, -1);
       else
-        option->expected(1);
+        option->expected(1)->allow_extra_args(false);  // what follows may be a file
     }
   }
 }

@@ -77,6 +77,12 @@ TEST(CommandLine, OtherCommands) {
   EXPECT_EQ(parsed("check a.json b.json").options.files.size(), 2u);
 }
 
+TEST(CommandLine, FilesAfterAnOption) {
+  const auto line = parsed("verify --jobs 2 --out results a.json b.json");
+  EXPECT_EQ(line.options.verify.out, "results");
+  EXPECT_EQ(line.options.files, (std::vector<std::filesystem::path>{"a.json", "b.json"}));
+}
+
 TEST(CommandLine, NearestNames) {
   EXPECT_EQ(problem("rendr --component 4"),
             "unknown command \"rendr\"\n  Did you mean \"render\"?");
