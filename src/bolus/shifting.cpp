@@ -20,9 +20,6 @@ constexpr double kFullDensity = 0.97;  // of all neighbours: no free surface nea
 
 void Shifting::begin(const Flow& f, std::vector<Vec3>& moving) {
   const int n = f.count();
-  slope_.resize(n);
-  shift_.resize(n);
-  carried_.resize(n);
   density_.resize(n + 1);
   density_[n] = INFINITY;
   least_.resize(n);
@@ -38,51 +35,22 @@ void Shifting::look(const Flow& f, const std::vector<double>& density, const std
   }
 }
 
-void Shifting::shift(const Flow& f, double dt_s, double spacing_m, const std::vector<Vec3>& v,
+void Shifting::shift(const Flow& f, double spacing_m, const std::vector<Vec3>& v,
                      std::vector<Vec3>& moving, const Projection::Range& then) {
   const LeastSweep least{f.lists(), density_.data(), least_.data()};
   const SlopeSweep slopes{f.lists(), velocity_.data()};
-  parts_.assign((f.count() + kSweepChunk - 1) / kSweepChunk, Vec3::Zero());
-  f.sweep([&](int begin, int end, int chunk) {
+  f.sweep([&](int begin, int end, int) {
     least.run(begin, end);
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
       moving[p] = v[p];
-      slope_[i].setZero();
-      shift_[i].setZero();
-      carried_[i].setZero();
       if (least_[i] < kFullDensity) continue;
       Vec3 gradient = spacing_m * (f.wall(i).gradLambda + f.neighbours.sumG.at(i).cast<double>());
       gradient *= kMostGradient / std::max(kMostGradient, gradient.norm());
-      slope_[i] = velocityGradient_s(f, slopes, v[p], i);
+      const double rate_s = shearRate_s(velocityGradient_s(f, slopes, v[p], i));
       const double strength = f.wall(i).lambda > 0 ? kStrengthAtWall : kStrength;
-      shift_[i] = -strength * spacing_m * shearRate_s(slope_[i]) * gradient;
-      moving[p] += shift_[i];
-      carried_[i] = dt_s * (slope_[i] * shift_[i]);
-      parts_[chunk] += carried_[i];
+      moving[p] -= strength * spacing_m * rate_s * gradient;
     }
-    then(begin, end);
-  });
-}
-
-void Shifting::carry(const Flow& f, double dt_s, bool changed, const std::vector<Vec3>& moving,
-                     std::vector<Vec3>& v, const Projection::Range& then) {
-  if (changed)
-    f.sweep([&](int begin, int end, int chunk) {
-      parts_[chunk].setZero();
-      for (int i = begin; i < end; ++i) {
-        const int p = f.particle(i);
-        // before a wall density pushes layers to and fro, and the start of plane Poiseuille flow
-        // comes out 6 % slow when that is taken for a way gone
-        if (!(f.wall(i).lambda > 0)) carried_[i] = dt_s * (slope_[i] * (moving[p] - v[p]));
-        parts_[chunk] += carried_[i];
-      }
-    });
-  Vec3 gained = Vec3::Zero();
-  for (const Vec3& part : parts_) gained += part;
-  gained /= std::max(1, f.count());
-  f.sweep([&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) v[f.particle(i)] += carried_[i] - gained;
     then(begin, end);
   });
 }

@@ -197,18 +197,17 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   report.rate = projection.divergenceFree(
       flow, particles.densityRatio, dt_s, v,
       [&](int begin, int end) { shifting.look(flow, particles.densityRatio, v, begin, end); });
-  shifting.shift(flow, dt_s, def.spacing_m, v, moving,
+  shifting.shift(flow, def.spacing_m, v, moving,
                  [&](int begin, int end) { projection.startFrom(flow, moving, begin, end); });
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
-  const auto pressure = [&](int begin, int end) {  // per volume that the particle really has
+  flow.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = flow.particle(i);
       reached[i] = static_cast<float>(std::max(v[p].squaredNorm(), moving[p].squaredNorm()));
-      particles.pressure_Pa[p] =
+      particles.pressure_Pa[p] =  // per volume that the particle really has
           projection.stress_m2s2(flow, i) * def.fluid.density_kgm3 * particles.densityRatio[p];
     }
-  };
-  shifting.carry(flow, dt_s, report.density.iterations > 0, moving, v, pressure);
+  });
   if (tension) tension->addPressure_Pa(particles.densityRatio, particles.pressure_Pa);
 }
 

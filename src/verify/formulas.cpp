@@ -92,6 +92,15 @@ double pistonHeight(const S& s, double t) {
   size[s.def.motion.axis] -= s.def.motion.speed.travel(t);
   return s.volume() / (size.x() * size.y());
 }
+/// Weight, and what rises against its viscosity as the piston shortens the room: the free surface
+/// bears no stress, -p + 2 eta v / L = 0.
+double pistonPressure_Pa(const S& s, double t) {
+  const double weight = s.fluid().density_kgm3 * s.g() * pistonHeight(s, t) / 2;
+  if (s.fluid().model != bolus::RheologyModel::newtonian) return weight;
+  const auto& motion = s.def.motion;
+  const double length_m = s.size()[motion.axis] - motion.speed.travel(t);
+  return weight + 2 * s.fluid().viscosity_Pas * motion.speed.speed(t) / length_m;
+}
 double vortexDecay(const S& s, double t) {
   const double kx = 2 * kPi / s.size().x(), ky = 2 * kPi / s.size().y();
   return std::exp(-s.nu() * (kx * kx + ky * ky) * t);
@@ -236,9 +245,7 @@ const std::vector<Formula>& formulas() {
       {"piston-pressure",
        false,
        {kSidePiston},
-       [](const S& s, const Probe& p) {
-         return s.fluid().density_kgm3 * s.g() * pistonHeight(s, p.time_s) / 2;
-       }},
+       [](const S& s, const Probe& p) { return pistonPressure_Pa(s, p.time_s); }},
       {"squeeze-plane-mean-pressure",
        false,
        {kNewtonian, kPlates, kThin},
