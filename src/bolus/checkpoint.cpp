@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000007;  // "SWBC", layout 7
+constexpr std::uint64_t kMark = 0x53574243'00000008;  // "SWBC", layout 8
 
 class Writer {
  public:
@@ -95,6 +95,7 @@ void all(Archive& a, Impl& s) {
   a(s.viscosity.shearRates().own_s);
   a(s.viscosity.shearRates().wall_s);
   a(s.viscosity.drags_ms2());
+  a(s.viscosity.slopes_s());
   a(s.viscosity.waiting());
   a(s.wallTriangles);
   a(s.caps);

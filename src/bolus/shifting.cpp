@@ -36,7 +36,7 @@ void Shifting::look(const Flow& f, const std::vector<double>& density, const std
 }
 
 void Shifting::shift(const Flow& f, double spacing_m, const std::vector<Vec3>& v,
-                     std::vector<Vec3>& moving, const Projection::Range& then) {
+                     std::vector<Vec3>& moving, std::span<Mat3f> slopes_s, const Projection::Range& then) {
   const LeastSweep least{f.lists(), density_.data(), least_.data()};
   const SlopeSweep slopes{f.lists(), velocity_.data()};
   f.sweep([&](int begin, int end, int) {
@@ -44,12 +44,15 @@ void Shifting::shift(const Flow& f, double spacing_m, const std::vector<Vec3>& v
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
       moving[p] = v[p];
-      if (least_[i] < kFullDensity) continue;
+      const bool inside = least_[i] >= kFullDensity;
+      if (!inside && slopes_s.empty()) continue;
+      const Mat3 slope_s = velocityGradient_s(f, slopes, v[p], i);
+      if (!slopes_s.empty()) slopes_s[i] = slope_s.cast<float>();
+      if (!inside) continue;
       Vec3 gradient = spacing_m * (f.wall(i).gradLambda + f.neighbours.sumG.at(i).cast<double>());
       gradient *= kMostGradient / std::max(kMostGradient, gradient.norm());
-      const double rate_s = shearRate_s(velocityGradient_s(f, slopes, v[p], i));
       const double strength = f.wall(i).lambda > 0 ? kStrengthAtWall : kStrength;
-      moving[p] -= strength * spacing_m * rate_s * gradient;
+      moving[p] -= strength * spacing_m * shearRate_s(slope_s) * gradient;
     }
     then(begin, end);
   });

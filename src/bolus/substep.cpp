@@ -203,7 +203,7 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   report.rate = projection.divergenceFree(
       flow, particles.densityRatio, dt_s, v,
       [&](int begin, int end) { shifting.look(flow, particles.densityRatio, v, begin, end); });
-  shifting.shift(flow, def.spacing_m, v, moving,
+  shifting.shift(flow, def.spacing_m, v, moving, viscosity.endSlopes_s(),
                  [&](int begin, int end) { projection.startFrom(flow, moving, begin, end); });
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
   const double fastestCorrection_ms = kLongestCorrection * def.spacing_m / dt_s;
@@ -240,6 +240,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
       const double next_s = share > 0 ? dt_s * kReachAim / share : INFINITY;
       reach_s = std::clamp(next_s, reach_s / 2, kReachGrowth * reach_s);
       if (reach_s > def.longestStep_s) reach_s = INFINITY;
+      viscosity.accept(flow());
       return dt_s;
     }
     reach_s = dt_s;

@@ -175,8 +175,11 @@ SC_INLINE F8 twice(const Tensor8& t, F8 x, F8 y, F8 z) {  // n.T.n
          all(2) * (x * y * t.xy + x * z * t.xz + y * z * t.yz);
 }
 
-/// c_ij of eight pairs from e on.
-SC_INLINE F8 pairWeights(const PairViscositySweep& s, const Tensor8& own, F8 mu, int e) {
+struct PairWeights {
+  F8 c, way;  ///< way times g is -c x / 2
+};
+/// Of eight pairs from e on.
+SC_INLINE PairWeights pairWeights(const PairViscositySweep& s, const Tensor8& own, F8 mu, int e) {
   const int* at = s.pairs.index + e;
   const F8 other = gather(s.viscosity, at), r = load(s.r + e);
   const F8 x = load(s.pairs.gx + e), y = load(s.pairs.gy + e), z = load(s.pairs.gz + e);
@@ -188,11 +191,19 @@ SC_INLINE F8 pairWeights(const PairViscositySweep& s, const Tensor8& own, F8 mu,
       largest(all(2 * s.leastEven), twice(both2, x, y, z) / largest(square, all(1e-30f)));
   // harmonic: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
   const F8 both = largest(all(s.leastPair), all(2) * mu * other / (mu + other));
-  return all(s.scale) * both * even * root(square) * r / (r * r + all(s.eta2));
+  const F8 weight = all(s.scale) * both * even * r / (r * r + all(s.eta2));
+  return {weight * root(square), all(0.5f) * weight * r};
 }
 SC_INLINE Tensor8 evennessOf(const PairViscositySweep& s, int i) {
   const float* b = s.evenness + 8 * i;
   return {all(b[0]), all(b[1]), all(b[2]), all(b[4]), all(b[5]), all(b[6])};
+}
+
+/// Row r of G_i^T + G_j^T, times g.
+SC_INLINE F8 rowTimes(const PairViscositySweep& s, int r, int i, const int* at, const F8x3& g) {
+  const float* own = s.slopes + 12 * static_cast<long>(i) + 4 * r;
+  const F8x3 o = gather3<12>(s.slopes + 4 * r, at);
+  return (all(own[0]) + o.x) * g.x + (all(own[1]) + o.y) * g.y + (all(own[2]) + o.z) * g.z;
 }
 
 SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
@@ -200,12 +211,24 @@ SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
     const F8 mu = all(s.viscosity[i]);
     const Tensor8 own = evennessOf(s, i);
     F8 total = all(0);
+    D8 x, y, z;
     for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
-      const F8 c = pairWeights(s, own, mu, e);
-      store(s.c + e, c);
-      total += c;
+      const PairWeights w = pairWeights(s, own, mu, e);
+      store(s.c + e, w.c);
+      total += w.c;
+      if (!s.slopes) continue;
+      const int* at = s.pairs.index + e;
+      const F8x3 g{w.way * load(s.pairs.gx + e), w.way * load(s.pairs.gy + e),
+                   w.way * load(s.pairs.gz + e)};
+      x.add(rowTimes(s, 0, i, at, g));
+      y.add(rowTimes(s, 1, i, at, g));
+      z.add(rowTimes(s, 2, i, at, g));
     }
     s.diagonal[i] = sum(total);
+    if (!s.slopes) continue;
+    s.turn[3 * i] = sum(x);
+    s.turn[3 * i + 1] = sum(y);
+    s.turn[3 * i + 2] = sum(z);
   }
 }
 

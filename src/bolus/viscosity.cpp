@@ -16,8 +16,8 @@ constexpr double kSoftening = 1e-4;  // eta^2 / (H/2)^2 against division by zero
 // there is nothing to be completed.
 constexpr float kLeastEvenness = 0.8f;
 // Determinant of the moment matrix below which a neighbourhood is too one-sided to be corrected,
-// assumed (0.1 to 0.5); 1 is a full one.
-constexpr double kLeastMoment = 0.3;
+// assumed (0.005 to 0.03): a full one has 1, a half one 1/8, one at an edge 1/64.
+constexpr double kLeastMoment = 0.01;
 constexpr float kIsotropic = 2.5f;       // see evenOut
 constexpr double kLeastPairShare = 0.2;  // of a pair's own weight, keeps it positive, assumed
 constexpr int kCap = 300;                // iterations, assumed (100 to 500)
@@ -116,6 +116,10 @@ void Viscosity::begin(Step& s) {
     (*a)[n] = 1;
   }
   evenness_.shape(n, 1);
+  const bool isFirst = waiting_.rate_s == 0 && !s.scheme.explicitWhereStable;
+  if (isFirst && s.scheme.override_Pas == 0) findSlopes(f, s.velocities);
+  const bool turning = s.pairs_s > 0 && s.scheme.override_Pas == 0 && !slopes_s_.empty();
+  turning_.assign(turning ? 12 * (n + std::size_t{1}) : 0, 0.f);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
 }
 
@@ -147,6 +151,10 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
       wallDrag_[p] = s.dt_s / s.fluid.density_kgm3 * std::max(shear, slit);
       right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
     }
+    if (!turning_.empty())
+      for (int k = 0; k < 9; ++k)
+        turning_[12 * static_cast<std::size_t>(i) + 4 * (k / 3) + k % 3] =
+            slopes_s_[p](k % 3, k / 3);
     own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));
     v_.set(i, right_[i] / (1 + wallDrag_[p]));
     right_[i] *= inertia_[i];
@@ -167,13 +175,30 @@ float Viscosity::weighPairs(const Step& s) {
       static_cast<float>(kSoftening * s.support_m * s.support_m / 4),
       static_cast<float>(kLeastPairShare),
       pair_.data(),
-      inverse_.data()};
+      inverse_.data(),
+      turning_.empty() ? nullptr : turning_.data(),
+      force_.data()};
   std::vector<float> most((f.count() + kSweepChunk - 1) / kSweepChunk);
   f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
+    if (!turning_.empty()) turn(s, begin, end);
     for (int i = begin; i < end; ++i) most[chunk] = std::max(most[chunk], inverse_[i]);
   });
   return most.empty() ? 0 : std::ranges::max(most);
+}
+
+// What pairs say is in force_.
+void Viscosity::turn(const Step& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    Vec3 push(&force_[3 * i]);
+    if (s.flow.beside[i]) {
+      const float* t = &turning_[12 * static_cast<std::size_t>(i)];
+      const Vec3f g = s.flow.wall(i).gradLambda.cast<float>();
+      const double weight = 2 * s.pairs_s / s.fluid.density_kgm3 * viscosity_[i];
+      for (int a = 0; a < 3; ++a) push[a] += weight * Vec3f(t + 4 * a).dot(g);
+    }
+    right_[i] += inertia_[i] * push;
+  }
 }
 
 // Conjugate gradients, preconditioned by the diagonal, all three components at once.
@@ -288,10 +313,25 @@ void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
   });
 }
 
+void Viscosity::findSlopes(const Flow& f, const std::vector<Vec3>& v) {
+  v_.shape(f.count(), 1);
+  for (int i = 0; i < f.count(); ++i) v_.set(i, v[f.particle(i)]);
+  const SlopeSweep slopes{f.lists(), v_.data()};
+  slopes_s_.assign(v.size(), Mat3f::Zero());
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const int p = f.particle(i);
+      slopes_s_[p] = velocityGradient_s(f, slopes, v[p], i).cast<float>();
+    }
+  });
+}
+
 Viscosity::Report Viscosity::exchange(const Step& s) {
+  endSlopes_s_.clear();
   if (s.pairs_s == 0) return {};
   const float most = weighPairs(s);
   waiting_ = {.rate_s = most / s.pairs_s};
+  if (s.scheme.override_Pas == 0 && most >= kLittleExchange) endSlopes_s_.resize(s.flow.count());
   if (most < kLittleExchange || isStableExplicitly(s)) return {};
   return solve(s);
 }
@@ -316,6 +356,19 @@ void Viscosity::rub(const Step& s, int begin, int end) {
 void Viscosity::end(const Step& s) {
   shearRates_.forget(s.velocities.size());
   if (s.constant_Pas == 0) findRates(s.flow, s.velocities);
+}
+
+void Viscosity::accept(const Flow& f) {
+  if (endSlopes_s_.empty()) return slopes_s_.clear();
+  slopes_s_.resize(f.walls.size(), Mat3f::Zero());
+  for (std::size_t p = 0; p < slopes_s_.size(); ++p)
+    if (f.neighbours.slot[p] < 0) slopes_s_[p].setZero();
+  f.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      Mat3f& slope = slopes_s_[f.particle(i)];
+      slope = 0.5f * (slope + endSlopes_s_[i]);
+    }
+  });
 }
 
 Viscosity::Report Viscosity::apply(const Flow& f, const Fluid& fluid, const Scheme& scheme,

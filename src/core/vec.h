@@ -10,6 +10,7 @@ using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Vec3f = Eigen::Vector3f;
 using Mat3 = Eigen::Matrix3d;
+using Mat3f = Eigen::Matrix3f;
 using Quat = Eigen::Quaterniond;
 
 /// Rigid motion; `apply(p) = q * p + t`. Variables of this type are named target-from-source.

@@ -132,6 +132,12 @@ double huppertRound_m(double volume, double t, double g, double nu) {
   return 0.894 * std::pow(g * volume * volume * volume * t / (3 * nu), 0.125);
 }
 
+SqueezedEdge squeezedEdge_m(double start, double mean, double gap) {
+  const double bulge = std::min((mean - start) / gap, kPi / 8);  // its area, in squared gaps
+  const double contact = mean - bulge * gap;
+  return {contact, contact + gap * (-0.05 + 0.4 * bulge + 0.2 * gap / mean)};
+}
+
 // Of a unit sphere, u its height over the centre, the cap is u > cos(angle): discs of pi (1 - u^2).
 double capSlenderness(double angle) {
   const double c = std::cos(angle);

@@ -171,7 +171,7 @@ const std::vector<Formula>& formulas() {
        true,
        {kNewtonian, kPlates, kThin},
        [](const S& s, const Probe& p) {
-         const double L = s.stripHalf(p.time_s), h = s.gap(p.time_s);
+         const double L = s.stripEdge(p.time_s).pressure, h = s.gap(p.time_s);
          const double x = p.at.x() - s.centre().x();
          return 6 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
                 std::max(0.0, L * L - x * x) / (h * h * h);
@@ -180,7 +180,7 @@ const std::vector<Formula>& formulas() {
        true,
        {kNewtonian, kPlates, kRound},
        [](const S& s, const Probe& p) {
-         const double R = s.discRadius(p.time_s), h = s.gap(p.time_s);
+         const double R = s.discEdge(p.time_s).pressure, h = s.gap(p.time_s);
          return 3 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
                 std::max(0.0, R * R - p.at.head<2>().squaredNorm()) / (h * h * h);
        }},
@@ -251,16 +251,18 @@ const std::vector<Formula>& formulas() {
        {kNewtonian, kPlates, kThin},
        [](const S& s, const Probe& p) {
          const double L = s.stripHalf(p.time_s), h = s.gap(p.time_s);
-         return 4 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) * L * L /
-                (h * h * h);
+         const auto [c, zero] = s.stripEdge(p.time_s);
+         return 6 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
+                (zero * zero * c - c * c * c / 3) / (h * h * h * L);
        }},
       {"squeeze-disc-mean-pressure",
        false,
        {kNewtonian, kPlates, kRound},
        [](const S& s, const Probe& p) {
          const double R = s.discRadius(p.time_s), h = s.gap(p.time_s);
-         return 1.5 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) * R * R /
-                (h * h * h);
+         const auto [c, zero] = s.discEdge(p.time_s);
+         return 3 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) * c * c *
+                (zero * zero - c * c / 2) / (h * h * h * R * R);
        }},
       {"shapiro-plane",
        false,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "verify/analytic.h"
 #include "verify/case.h"
 #include "verify/domain.h"
 #include "verify/fill.h"
@@ -39,6 +40,12 @@ struct Setting {
   double gap(double t) const { return height0() - def.motion.speed.travel(t); }
   double stripHalf(double t) const { return volume() / size().y() / gap(t) / 2; }
   double discRadius(double t) const { return std::sqrt(volume() / (kPi * gap(t))); }
+  SqueezedEdge stripEdge(double t) const {
+    return squeezedEdge_m(stripHalf(0), stripHalf(t), gap(t));
+  }
+  SqueezedEdge discEdge(double t) const {
+    return squeezedEdge_m(discRadius(0), discRadius(t), gap(t));
+  }
   double stress() const {  // at the wall of a channel or tube driven along x
     const double force = def.fluid.density_kgm3 * std::abs(def.gravity_ms2.x());
     return def.domain.shape == Shape::tube ? force * def.domain.radius_m / 2

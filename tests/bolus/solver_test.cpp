@@ -71,6 +71,35 @@ TEST(Solver, AThinFluidsShearWaveDecaysAsViscositySays) {
   EXPECT_NEAR(rate_s, d.fluid.viscosity_Pas / d.fluid.density_kgm3 * k * k, 0.1 * rate_s);
 }
 
+// A lump of honey turns in free space: no stress at its surface, so nothing slows it. (Where du/dn
+// vanishes there instead, the first millisecond takes a fifth.)
+TEST(Solver, ALumpOfHoneyKeepsTurning) {
+  const WallMotion walls =
+      testing::still(testing::box({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, 0.01));
+  BolusDef d = smallBolus(5);
+  d.spacing_m = 1e-3;
+  d.gravity_ms2.setZero();
+  Solver s(d, walls, 1);
+  const Vec3 turn_s(0, 0, 5);
+  std::vector<Vec3> x, v;
+  for (int i = 0; i < 13 * 13 * 13; ++i) {
+    const Vec3 at = d.spacing_m * Vec3(i % 13 - 6, i / 13 % 13 - 6, i / 169 - 6);
+    if (at.norm() > 6.2e-3) continue;
+    x.push_back(at);
+    v.push_back(turn_s.cross(at));
+  }
+  ASSERT_TRUE(s.place(0, x, v));
+  const auto angularMomentum = [](const std::vector<Vec3>& at, const std::vector<Vec3>& velocity) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < at.size(); ++i) sum += at[i].cross(velocity[i]);
+    return sum;
+  };
+  const Vec3 before = angularMomentum(x, v);
+  ASSERT_TRUE(s.advanceTo(0.1));
+  const Vec3 after = angularMomentum(s.particles().positions, s.particles().velocities);
+  EXPECT_LT((after - before).norm(), 0.01 * before.norm()) << after.z() / before.z();
+}
+
 TEST(Solver, SurfaceMustBeClosed) {
   testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 2e-3);
   mesh.triangles.pop_back();
