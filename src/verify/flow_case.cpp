@@ -14,7 +14,8 @@ constexpr int kSnapshotsPerMean = 10;  // assumed (5 to 20)
 // An error below this share of what is allowed need not fall on refinement; assumed (0.1 to 5 %).
 constexpr double kAlreadyExact = 0.01;
 constexpr double kLastShare = 0.02;  // of the time since the last sample, assumed (0.01 to 0.1)
-constexpr int kStepsToFirstProfile = 15;  // at least, assumed (10 to 30)
+// At least, assumed (30 to 60; 10 to 30): boundary layers of what starts from rest begin thin.
+constexpr int kStepsToFirstProfile = 40, kStepsOfMoving = 15;
 constexpr int kShifts = 2000;  // tried either way for the best alignment, over the whole run
 
 /// All that one spacing gives: per check its series, or its profiles.
@@ -85,7 +86,9 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
   // steps.
   if (std::ranges::any_of(def.checks, [](const auto& c) { return c.quantity.kind == "profile"; }))
     bolusDef.longestStep_s =
-        std::min(bolusDef.longestStep_s, def.samples_s.front() / kStepsToFirstProfile);
+        std::min(bolusDef.longestStep_s,
+                 def.samples_s.front() / (def.start == StartKind::rest ? kStepsToFirstProfile
+                                                                       : kStepsOfMoving));
   auto start = relaxed(def, *domain, bolusDef, std::move(*filled));
   if (!start) return std::unexpected(start.error());
   bolus::Solver solver(bolusDef, domain->walls(), 1);
