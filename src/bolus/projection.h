@@ -43,9 +43,7 @@ struct Flow {
   }
   int particle(int slot) const { return neighbours.id[slot]; }
   /// Most are far from walls, and theirs need not be fetched.
-  const WallSample& wall(int slot) const {
-    return beside[slot] ? walls[particle(slot)] : kNoWall;
-  }
+  const WallSample& wall(int slot) const { return beside[slot] ? walls[particle(slot)] : kNoWall; }
 };
 
 struct Tolerances {

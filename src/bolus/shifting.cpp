@@ -36,7 +36,8 @@ void Shifting::look(const Flow& f, const std::vector<double>& density, const std
 }
 
 void Shifting::shift(const Flow& f, double spacing_m, const std::vector<Vec3>& v,
-                     std::vector<Vec3>& moving, std::span<Mat3f> slopes_s, const Projection::Range& then) {
+                     std::vector<Vec3>& moving, std::span<Mat3f> slopes_s,
+                     const Projection::Range& then) {
   const LeastSweep least{f.lists(), density_.data(), least_.data()};
   const SlopeSweep slopes{f.lists(), velocity_.data()};
   f.sweep([&](int begin, int end, int) {

@@ -7,6 +7,7 @@
 // grows; and what momentum is gained so has to be taken from somewhere. Plates that start to drag
 // water came out 24 % off, far from the plate as well, a sheared channel of 0.02 Pa.s 4 % too thin.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "bolus/projection.h"

@@ -226,9 +226,9 @@ SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
     }
     s.diagonal[i] = sum(total);
     if (!s.slopes) continue;
-    s.turn[3 * i] = sum(x);
-    s.turn[3 * i + 1] = sum(y);
-    s.turn[3 * i + 2] = sum(z);
+    s.transposed[3 * i] = sum(x);
+    s.transposed[3 * i + 1] = sum(y);
+    s.transposed[3 * i + 2] = sum(z);
   }
 }
 

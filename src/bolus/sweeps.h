@@ -106,8 +106,8 @@ struct Tensors {
 };
 
 /// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu harmonic and at least leastPair, even =
-/// n.(B_i + B_j).n / 2 along the pair, at least leastEven; diagonal_i = sum c_ij. With slopes G also
-/// turn_i = -sum c_ij (G_i + G_j)^T x_ij / 2, summed as GradientSweep.
+/// n.(B_i + B_j).n / 2 along the pair, at least leastEven; diagonal_i = sum c_ij. With slopes G
+/// also transposed_i = -sum c_ij (G_i + G_j)^T x_ij / 2, summed as GradientSweep.
 struct PairViscositySweep {
   PairLists pairs;
   const float *r, *viscosity;
@@ -115,7 +115,7 @@ struct PairViscositySweep {
   float scale, leastPair, eta2, leastEven;
   float *c, *diagonal;
   const float *slopes;  ///< G^T: [slot][3][4], rows; or null
-  double *turn;         ///< [slot][3]
+  double *transposed;   ///< [slot][3]
   void run(int begin, int end) const;
 };
 

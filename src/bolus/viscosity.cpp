@@ -15,9 +15,9 @@ constexpr double kSoftening = 1e-4;  // eta^2 / (H/2)^2 against division by zero
 // what they really sum to scales them. Not below this, assumed (0.5 to 0.9): at a free surface
 // there is nothing to be completed.
 constexpr float kLeastEvenness = 0.8f;
-// Determinant of the moment matrix below which a neighbourhood is too one-sided to be corrected,
-// assumed (0.005 to 0.03): a full one has 1, a half one 1/8, one at an edge 1/64.
-constexpr double kLeastMoment = 0.01;
+// Norm of the inverse moment matrix above which a neighbourhood is too one-sided to be corrected,
+// assumed (7 to 13): a full one has 1.7, a half one 3.5, one at an edge 7, at a corner 14.
+constexpr double kMostInverse = 10;
 constexpr float kIsotropic = 2.5f;       // see evenOut
 constexpr double kLeastPairShare = 0.2;  // of a pair's own weight, keeps it positive, assumed
 constexpr int kCap = 300;                // iterations, assumed (100 to 500)
@@ -58,8 +58,9 @@ Mat3 velocityGradient_s(const Flow& f, const SlopeSweep& slopes, const Vec3& v, 
   Mat3 inverse;
   double determinant = 0;
   bool fine = false;
-  moment.computeInverseAndDetWithCheck(inverse, determinant, fine, kLeastMoment);
-  return fine && determinant > 0 ? Mat3(gradient * inverse) : gradient;
+  moment.computeInverseAndDetWithCheck(inverse, determinant, fine, 1e-9);
+  fine = fine && determinant > 0 && inverse.norm() < kMostInverse;
+  return fine ? Mat3(gradient * inverse) : gradient;
 }
 Mat3 gradientBeforeWall_s(const WallSample& w, const Vec3& v, const Mat3& gradient) {
   const double steep = w.gradLambda.norm();
@@ -118,8 +119,8 @@ void Viscosity::begin(Step& s) {
   evenness_.shape(n, 1);
   const bool isFirst = waiting_.rate_s == 0 && !s.scheme.explicitWhereStable;
   if (isFirst && s.scheme.override_Pas == 0) findSlopes(f, s.velocities);
-  const bool turning = s.pairs_s > 0 && s.scheme.override_Pas == 0 && !slopes_s_.empty();
-  turning_.assign(turning ? 12 * (n + std::size_t{1}) : 0, 0.f);
+  const bool transposed = s.pairs_s > 0 && s.scheme.override_Pas == 0 && !slopes_s_.empty();
+  transposed_.assign(transposed ? 12 * (n + std::size_t{1}) : 0, 0.f);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
 }
 
@@ -151,9 +152,9 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
       wallDrag_[p] = s.dt_s / s.fluid.density_kgm3 * std::max(shear, slit);
       right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
     }
-    if (!turning_.empty())
+    if (!transposed_.empty())
       for (int k = 0; k < 9; ++k)
-        turning_[12 * static_cast<std::size_t>(i) + 4 * (k / 3) + k % 3] =
+        transposed_[12 * static_cast<std::size_t>(i) + 4 * (k / 3) + k % 3] =
             slopes_s_[p](k % 3, k / 3);
     own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));
     v_.set(i, right_[i] / (1 + wallDrag_[p]));
@@ -161,7 +162,8 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
   }
 }
 
-// Weights of pairs, and their sums in inverse_.
+// Weights of pairs, and their sums in inverse_; what follows from the last steps' slopes goes to
+// the right side.
 float Viscosity::weighPairs(const Step& s) {
   const Flow& f = s.flow;
   pair_.resize(f.neighbours.index.size());
@@ -176,28 +178,28 @@ float Viscosity::weighPairs(const Step& s) {
       static_cast<float>(kLeastPairShare),
       pair_.data(),
       inverse_.data(),
-      turning_.empty() ? nullptr : turning_.data(),
+      transposed_.empty() ? nullptr : transposed_.data(),
       force_.data()};
   std::vector<float> most((f.count() + kSweepChunk - 1) / kSweepChunk);
   f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
-    if (!turning_.empty()) turn(s, begin, end);
+    if (!transposed_.empty()) addTransposed(s, begin, end);
     for (int i = begin; i < end; ++i) most[chunk] = std::max(most[chunk], inverse_[i]);
   });
   return most.empty() ? 0 : std::ranges::max(most);
 }
 
-// What pairs say is in force_.
-void Viscosity::turn(const Step& s, int begin, int end) {
+// What pairs give is in force_.
+void Viscosity::addTransposed(const Step& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     Vec3 push(&force_[3 * i]);
-    if (s.flow.beside[i]) {
-      const float* t = &turning_[12 * static_cast<std::size_t>(i)];
+    if (s.flow.beside[i] && !s.scheme.slip) {
+      const float* t = &transposed_[12 * static_cast<std::size_t>(i)];
       const Vec3f g = s.flow.wall(i).gradLambda.cast<float>();
       const double weight = 2 * s.pairs_s / s.fluid.density_kgm3 * viscosity_[i];
       for (int a = 0; a < 3; ++a) push[a] += weight * Vec3f(t + 4 * a).dot(g);
     }
-    right_[i] += inertia_[i] * push;
+    right_[i] += push;
   }
 }
 
@@ -295,12 +297,16 @@ void Viscosity::ShearRates::forget(std::size_t particles) {
   wall_s.assign(particles, NAN);
 }
 
-// Those that are not known yet.
-void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
+void Viscosity::look(const Flow& f, const std::vector<Vec3>& v) {
   v_.shape(f.count(), 1);
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) v_.set(i, v[f.particle(i)]);
   });
+}
+
+// Those that are not known yet.
+void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
+  look(f, v);
   const SlopeSweep slopes{f.lists(), v_.data()};
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
@@ -314,8 +320,7 @@ void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
 }
 
 void Viscosity::findSlopes(const Flow& f, const std::vector<Vec3>& v) {
-  v_.shape(f.count(), 1);
-  for (int i = 0; i < f.count(); ++i) v_.set(i, v[f.particle(i)]);
+  look(f, v);
   const SlopeSweep slopes{f.lists(), v_.data()};
   slopes_s_.assign(v.size(), Mat3f::Zero());
   f.sweep([&](int begin, int end, int) {
@@ -327,11 +332,12 @@ void Viscosity::findSlopes(const Flow& f, const std::vector<Vec3>& v) {
 }
 
 Viscosity::Report Viscosity::exchange(const Step& s) {
-  endSlopes_s_.clear();
+  const bool remembers =
+      s.pairs_s > 0 && s.scheme.override_Pas == 0 && !s.scheme.explicitWhereStable;
+  endSlopes_s_.resize(remembers ? s.flow.count() : 0);
   if (s.pairs_s == 0) return {};
   const float most = weighPairs(s);
   waiting_ = {.rate_s = most / s.pairs_s};
-  if (s.scheme.override_Pas == 0 && most >= kLittleExchange) endSlopes_s_.resize(s.flow.count());
   if (most < kLittleExchange || isStableExplicitly(s)) return {};
   return solve(s);
 }
@@ -359,14 +365,14 @@ void Viscosity::end(const Step& s) {
 }
 
 void Viscosity::accept(const Flow& f) {
-  if (endSlopes_s_.empty()) return slopes_s_.clear();
+  if (endSlopes_s_.empty()) return;
   slopes_s_.resize(f.walls.size(), Mat3f::Zero());
   for (std::size_t p = 0; p < slopes_s_.size(); ++p)
     if (f.neighbours.slot[p] < 0) slopes_s_[p].setZero();
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       Mat3f& slope = slopes_s_[f.particle(i)];
-      slope = 0.5f * (slope + endSlopes_s_[i]);
+      slope = slope.isZero(0) ? endSlopes_s_[i] : Mat3f(0.5f * (slope + endSlopes_s_[i]));
     }
   });
 }

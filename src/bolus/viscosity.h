@@ -10,15 +10,16 @@
 // 2013 divide) leaves the system symmetric. Walls that let slip have tau = tau' d and no friction:
 // there the right side is 1 - lambda + d |grad lambda|, which is one within a few percent.
 // On a cubic lattice it gives 1.01 of the viscosity; forces along the line of centres, which also
-// keep angular momentum (Monaghan 2005: 10 v.x / r^2 gradW), give 0.71 of it with so few neighbours.
-// That Laplacian is what stress makes of a flow without compression, inside. At a free surface it
-// lets du/dn vanish instead of the stress, and so stops a lump of honey that turns. What it lacks is
-// div(mu (grad v)^T), and pairs of the same weights c_ij give it, with G = grad v:
+// keep angular momentum (Monaghan 2005: 10 v.x / r^2 gradW), give 0.71 of it with so few
+// neighbours. That Laplacian is what stress makes of a flow without compression, inside. At a free
+// surface it lets du/dn vanish instead of the stress, and so stops a lump of honey that turns. What
+// it lacks is div(mu (grad v)^T), and pairs of the same weights c_ij give it, with G = grad v:
 //   sum c_ij (v_i - v_j)  becomes  sum c_ij (v_i - v_j + (G_i + G_j)^T x_ij / 2),
 // which is zero for each pair of a body that turns as if rigid, so that angular momentum stays. A
-// wall has the T = mu G^T of the particle before it: + 2 T_i grad lambda_i. G comes from the last
-// steps' velocities, each step's counting as much as all before it. From the last step alone a field
-// of pure strain would change its sign every step where mu dt / h^2 is large; so it is damped.
+// wall that does not let slip has the T = mu G^T of the particle before it: + 2 T_i grad lambda_i.
+// G comes from the last steps' velocities, each step's counting as much as all before it. From the
+// last step alone a field of pure strain would change its sign every step where mu dt / h^2 is
+// large; so it is damped. (wcsph, as in the thesis, goes without.)
 #pragma once
 #include <cstdint>
 #include <span>
@@ -99,22 +100,23 @@ class Viscosity {
   std::vector<Mat3f>& slopes_s() { return slopes_s_; }
 
  private:
-  /// Largest sum of a slot's weights.
+  /// Largest sum of a slot's weights; also adds the transposed part to the right side.
   float weighPairs(const Step& step);
   void findRates(const Flow& flow, const std::vector<Vec3>& velocities);
+  void look(const Flow& flow, const std::vector<Vec3>& velocities);
   void findSlopes(const Flow& flow, const std::vector<Vec3>& velocities);
   static void evenOut(const WallSample& wall, const float* moment, float* even);
   bool canWait(const Step& step) const;
   bool isStableExplicitly(const Step& step) const;
   Report solve(const Step& step);
-  void turn(const Step& step, int begin, int end);
+  void addTransposed(const Step& step, int begin, int end);
 
   ShearRates shearRates_;
   Waiting waiting_;
   std::vector<Vec3> drag_ms2_;               // [particle]
   std::vector<Mat3f> slopes_s_;              // [particle]
   std::vector<Mat3f> endSlopes_s_;           // [slot]
-  std::vector<float> turning_;               // [slot + 1][3][4] slopes, transposed; empty: none
+  std::vector<float> transposed_;            // [slot + 1][3][4] slopes, transposed; empty: none
   std::vector<double> wallDrag_;             // [particle]
   std::vector<double> viscosity_, force_;    // [slot]; [slot][3]
   std::vector<double> inertia_;              // [slot], see above

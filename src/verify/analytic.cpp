@@ -133,7 +133,7 @@ double huppertRound_m(double volume, double t, double g, double nu) {
 }
 
 SqueezedEdge squeezedEdge_m(double start, double mean, double gap) {
-  const double bulge = std::min((mean - start) / gap, kPi / 8);  // its area, in squared gaps
+  const double bulge = std::clamp((mean - start) / gap, 0.0, kPi / 8);  // its area, in squared gaps
   const double contact = mean - bulge * gap;
   return {contact, contact + gap * (-0.05 + 0.4 * bulge + 0.2 * gap / mean)};
 }

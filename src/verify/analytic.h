@@ -32,12 +32,13 @@ double huppertRound_m(double volume_m3, double t, double g_ms2, double nu);
 /// Free edge of fluid between plates that close, lengths (m) from the middle. It sticks to them and
 /// bulges, until the bulge is half round and rolls.
 struct SqueezedEdge {
-  double contact;   ///< where the plates' wet part ends
-  double pressure;  ///< where the parabola of pressure far from the edge would be zero
+  double contact;  ///< where the plates' wet part ends
+  double zero;     ///< where the parabola of pressure far from the edge would be zero
 };
 /// From the half length `start` before they close, and the mean one `mean` at a gap `gap`. How the
 /// pressure meets the edge is a fit (within 0.02 gaps for mean / gap from 4 to 9) to solutions of
-/// Stokes' equations, tests/verify/squeezed_edge_test.cpp.
+/// Stokes' equations, tests/verify/squeezed_edge_test.cpp,
+/// of strips; a disc's rim is taken to be like them.
 SqueezedEdge squeezedEdge_m(double start, double mean, double gap);
 
 /// Of a spherical cap that meets its floor under an angle (rad): mean height over the floor divided

@@ -87,8 +87,8 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
   if (std::ranges::any_of(def.checks, [](const auto& c) { return c.quantity.kind == "profile"; }))
     bolusDef.longestStep_s =
         std::min(bolusDef.longestStep_s,
-                 def.samples_s.front() / (def.start == StartKind::rest ? kStepsToFirstProfile
-                                                                       : kStepsOfMoving));
+                 def.samples_s.front() /
+                     (def.start == StartKind::rest ? kStepsToFirstProfile : kStepsOfMoving));
   auto start = relaxed(def, *domain, bolusDef, std::move(*filled));
   if (!start) return std::unexpected(start.error());
   bolus::Solver solver(bolusDef, domain->walls(), 1);

@@ -171,7 +171,7 @@ const std::vector<Formula>& formulas() {
        true,
        {kNewtonian, kPlates, kThin},
        [](const S& s, const Probe& p) {
-         const double L = s.stripEdge(p.time_s).pressure, h = s.gap(p.time_s);
+         const double L = s.stripEdge(p.time_s).zero, h = s.gap(p.time_s);
          const double x = p.at.x() - s.centre().x();
          return 6 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
                 std::max(0.0, L * L - x * x) / (h * h * h);
@@ -180,7 +180,7 @@ const std::vector<Formula>& formulas() {
        true,
        {kNewtonian, kPlates, kRound},
        [](const S& s, const Probe& p) {
-         const double R = s.discEdge(p.time_s).pressure, h = s.gap(p.time_s);
+         const double R = s.discEdge(p.time_s).zero, h = s.gap(p.time_s);
          return 3 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
                 std::max(0.0, R * R - p.at.head<2>().squaredNorm()) / (h * h * h);
        }},

@@ -98,6 +98,9 @@ TEST(Solver, ALumpOfHoneyKeepsTurning) {
   ASSERT_TRUE(s.advanceTo(0.1));
   const Vec3 after = angularMomentum(s.particles().positions, s.particles().velocities);
   EXPECT_LT((after - before).norm(), 0.01 * before.norm()) << after.z() / before.z();
+  Vec3 momentum = Vec3::Zero();
+  for (const Vec3& each : s.particles().velocities) momentum += each;
+  EXPECT_LT(momentum.norm(), 1e-9 * turn_s.norm());
 }
 
 TEST(Solver, SurfaceMustBeClosed) {

@@ -6,6 +6,7 @@
 #include <Eigen/Sparse>
 #include <Eigen/SparseLU>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/vec.h"
@@ -51,9 +52,7 @@ class Strip {
     if (x < wet_) return true;
     return bulges_ && std::pow(x - centre_, 2) + std::pow(y - 0.5, 2) < radius_ * radius_;
   }
-  bool onPlate(int i, int j) const {
-    return (j == 0 || j == across_) && (i + 0.5) * cell_ < wet_;
-  }
+  bool onPlate(int i, int j) const { return (j == 0 || j == across_) && (i + 0.5) * cell_ < wet_; }
   int& u(int i, int j) { return u_[i * across_ + j]; }
   int& v(int i, int j) { return v_[i * (across_ + 1) + j]; }
   int p(int i, int j) const { return p_[i * across_ + j]; }
@@ -102,8 +101,8 @@ class Strip {
       if (i * cell_ < wet_ - 1e-9) addU(s, i, j == 0 ? 0 : j - 1, (j == 0 ? 2 : -2) / cell_);
       return s;
     }
-    const bool full = i > 0 && inside(i, j) && inside(i - 1, j) && inside(i, j - 1) &&
-                      inside(i - 1, j - 1);
+    const bool full =
+        i > 0 && inside(i, j) && inside(i - 1, j) && inside(i, j - 1) && inside(i - 1, j - 1);
     if (!full) return s;  // a free surface, or the plane of symmetry
     addU(s, i, j, 1 / cell_), addU(s, i, j - 1, -1 / cell_);
     addV(s, i, j, 1 / cell_), addV(s, i - 1, j, -1 / cell_);
@@ -150,8 +149,11 @@ class Strip {
     matrix.setFromTriplets(entries.begin(), entries.end());
     matrix.makeCompressed();
     const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
-    ASSERT_EQ(lu.info(), Eigen::Success);
-    solution_ = lu.solve(right);
+    EXPECT_EQ(lu.info(), Eigen::Success);
+    if (lu.info() == Eigen::Success)
+      solution_ = lu.solve(right);
+    else
+      solution_.setConstant(count_, NAN);
   }
 
   double wet_;
@@ -174,7 +176,7 @@ TEST(SqueezedEdge, StokesEquationsAgree) {
                    fine = Strip(wet, bulge, 40).zeroOfPressure(x);
       const SqueezedEdge edge = squeezedEdge_m(wet, wet + bulge, 1);
       EXPECT_NEAR(edge.contact, wet, 1e-12);
-      EXPECT_NEAR(edge.pressure, 2 * fine - coarse, 0.02) << "wet " << wet << " bulge " << bulge;
+      EXPECT_NEAR(edge.zero, 2 * fine - coarse, 0.02) << "wet " << wet << " bulge " << bulge;
     }
 }
 
