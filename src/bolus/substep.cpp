@@ -173,8 +173,12 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   const bool settling = settlingViscosity_Pas > 0;
   std::fill(particles.pressure_Pa.begin(), particles.pressure_Pa.end(), 0.0);
   Viscosity::Step viscous{
-      flow, def.fluid,          {.override_Pas = settlingViscosity_Pas, .slip = def.slip},
-      dt_s, kernel.support_m(), v};
+      flow,
+      def.fluid,
+      {.override_Pas = settlingViscosity_Pas, .slip = def.slip, .full = def.full},
+      dt_s,
+      kernel.support_m(),
+      v};
   projection.prepare(flow);
   viscosity.begin(viscous);
   shifting.begin(flow, moving);

@@ -117,9 +117,8 @@ void Viscosity::begin(Step& s) {
     (*a)[n] = 1;
   }
   evenness_.shape(n, 1);
-  const bool isFirst = waiting_.rate_s == 0 && !s.scheme.explicitWhereStable;
-  if (isFirst && s.scheme.override_Pas == 0) findSlopes(f, s.velocities);
-  const bool transposed = s.pairs_s > 0 && s.scheme.override_Pas == 0 && !slopes_s_.empty();
+  if (waiting_.rate_s == 0 && knowsTransposed(s)) findSlopes(f, s.velocities);
+  const bool transposed = s.pairs_s > 0 && knowsTransposed(s) && !slopes_s_.empty();
   transposed_.assign(transposed ? 12 * (n + std::size_t{1}) : 0, 0.f);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
 }
@@ -285,6 +284,11 @@ Viscosity::Report Viscosity::solve(const Step& s) {
   return report;
 }
 
+bool Viscosity::knowsTransposed(const Step& s) {
+  return s.scheme.override_Pas == 0 && !s.scheme.explicitWhereStable &&
+         !(s.scheme.full && s.constant_Pas > 0);
+}
+
 bool Viscosity::isStableExplicitly(const Step& s) const {
   if (!s.scheme.explicitWhereStable) return false;
   double most = s.scheme.leastPair_Pas;
@@ -332,8 +336,7 @@ void Viscosity::findSlopes(const Flow& f, const std::vector<Vec3>& v) {
 }
 
 Viscosity::Report Viscosity::exchange(const Step& s) {
-  const bool remembers =
-      s.pairs_s > 0 && s.scheme.override_Pas == 0 && !s.scheme.explicitWhereStable;
+  const bool remembers = s.pairs_s > 0 && knowsTransposed(s);
   endSlopes_s_.resize(remembers ? s.flow.count() : 0);
   if (s.pairs_s == 0) return {};
   const float most = weighPairs(s);

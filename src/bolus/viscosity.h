@@ -43,6 +43,8 @@ class Viscosity {
     /// the walls' friction stays implicit, for it has no least distance.
     bool explicitWhereStable = false;
     bool slip = false;  ///< walls have no friction
+    /// No free surface: with one viscosity everywhere the transposed part has no divergence there.
+    bool full = false;
   };
   /// Viscosities of the moment from the strain rate, then one backward Euler step of `velocities`.
   Report apply(const Flow& flow, const Fluid& fluid, const Scheme& scheme, double dt_s,
@@ -108,6 +110,7 @@ class Viscosity {
   static void evenOut(const WallSample& wall, const float* moment, float* even);
   bool canWait(const Step& step) const;
   bool isStableExplicitly(const Step& step) const;
+  static bool knowsTransposed(const Step& step);
   Report solve(const Step& step);
   void addTransposed(const Step& step, int begin, int end);
 
