@@ -98,7 +98,7 @@ class Viscosity {
 
   /// [particle] acceleration by the last step's viscosity: where the next solve starts from.
   std::vector<Vec3>& drags_ms2() { return drag_ms2_; }
-  /// [particle] dv_a / dx_b (1/s) of the last steps; empty: fluid that hardly rubs.
+  /// [particle] dv_a / dx_b (1/s) of the last steps; empty: not known or not asked for.
   std::vector<Mat3f>& slopes_s() { return slopes_s_; }
 
  private:
