@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000008;  // "SWBC", layout 8
+constexpr std::uint64_t kMark = 0x53574243'00000009;  // "SWBC", layout 9
 
 class Writer {
  public:
@@ -92,8 +92,9 @@ void all(Archive& a, Impl& s) {
   a(s.wallsBefore);
   a(s.fastestWall_ms);
   a(s.lastStep_s);
-  a(s.viscosity.shearRates().own_s);
-  a(s.viscosity.shearRates().wall_s);
+  a(s.viscosity.shear().own_s);
+  a(s.viscosity.shear().wall_s);
+  a(s.viscosity.shear().field);
   a(s.viscosity.drags_ms2());
   a(s.viscosity.slopes_s());
   a(s.viscosity.waiting());

@@ -34,6 +34,8 @@ struct Fluid {
 
   /// "" when every number is usable, else what is wrong with which field.
   std::string validate() const;
+
+  bool operator==(const Fluid&) const = default;
 };
 
 double apparentViscosity_Pas(const Fluid& fluid, double shearRate_s);

@@ -45,7 +45,8 @@ void Solver::Impl::sortParticles(std::vector<double>& more) {
   eachOf(particles, sort);
   sort(number), sort(more), sort(active), sort(contacts), sort(gap_m), sort(walls), sort(held);
   sort(contactsAt), sort(lastNearest), sort(projection.densityWarm()), sort(projection.rateWarm());
-  sort(viscosity.shearRates().own_s), sort(viscosity.shearRates().wall_s);
+  sort(viscosity.shear().own_s), sort(viscosity.shear().wall_s);
+  sort(viscosity.shear().field);
   sort(viscosity.drags_ms2()), sort(viscosity.slopes_s());
   neighbours.renumber();
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bolus/viscosity.h"
+#include "bolus/velocity_gradient.h"
 
 namespace swallowclip::bolus {
 namespace {

@@ -119,7 +119,7 @@ struct Solver::Impl {
   struct {
     std::vector<Vec3> velocities;
     std::vector<double> rate, density;
-    Viscosity::ShearRates shear;
+    Viscosity::Shear shear;
     Viscosity::Waiting waiting;
   } kept;                            // a step, should it be taken again
   std::vector<std::uint8_t> caught;  // [particle] by the walls' shape: film

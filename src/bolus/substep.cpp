@@ -231,7 +231,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
   kept.velocities = particles.velocities;
   kept.rate = projection.rateWarm();
   kept.density = projection.densityWarm();
-  kept.shear = viscosity.shearRates();
+  kept.shear = viscosity.shear();
   kept.waiting = viscosity.waiting();
   reached.assign(neighbours.count, 0);
   for (const double least_s = std::max(kShortestRetry * dt_s, kShortestStep_s);;) {
@@ -252,7 +252,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
     particles.velocities = kept.velocities;
     projection.rateWarm() = kept.rate;
     projection.densityWarm() = kept.density;
-    viscosity.shearRates() = kept.shear;
+    viscosity.shear() = kept.shear;
     viscosity.waiting() = kept.waiting;
   }
 }

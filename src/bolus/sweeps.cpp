@@ -175,24 +175,65 @@ SC_INLINE F8 twice(const Tensor8& t, F8 x, F8 y, F8 z) {  // n.T.n
          all(2) * (x * y * t.xy + x * z * t.xz + y * z * t.yz);
 }
 
+/// Row r of the gradient half way between i and its neighbours, n along the pair.
+SC_INLINE F8x3 midRow(const PairViscositySweep& s, int r, int i, const int* at, const F8x3& n,
+                      F8 perMetre) {
+  const float* own = s.field + 12 * static_cast<long>(i) + 4 * r;
+  const F8x4 o = gather4<12>(s.field + 4 * r, at);
+  const F8 half = all(0.5f);
+  const F8 x = half * (all(own[0]) + o.x), y = half * (all(own[1]) + o.y),
+           z = half * (all(own[2]) + o.z);
+  const F8 lacks = (all(own[3]) - o.w) * perMetre - (x * n.x + y * n.y + z * n.z);
+  return {x + lacks * n.x, y + lacks * n.y, z + lacks * n.z};
+}
+
+SC_INLINE F8 tableAt(const ViscosityTable& t, F8 square) {
+  constexpr int kPart = ViscosityTable::kPartBits;
+  const F8 within =
+      smallest(all(ViscosityTable::kMost), largest(all(ViscosityTable::kLeast), square));
+  I8 word;
+  std::memcpy(&word, &within, sizeof word);
+  const I8 node = (word >> kPart) - allInt(t.first);
+  const F8 part =
+      __builtin_convertvector(word & allInt((1 << kPart) - 1), F8) * all(1.f / (1 << kPart));
+  F8 value, step;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const ViscosityTable::Node& at = t.nodes[node[lane]];
+    value[lane] = at.value_Pas;
+    step[lane] = at.step_Pas;
+  }
+  return value + part * step;
+}
+
+SC_INLINE F8 pairViscosityAt(const PairViscositySweep& s, int i, const int* at, const F8x3& g,
+                             F8 size, F8 r) {
+  if (s.constant > 0) return all(s.constant);
+  const F8 scale = all(-1) / largest(size, all(1e-30f)), perMetre = all(1) / r;
+  const F8x3 n{scale * g.x, scale * g.y, scale * g.z};
+  const F8x3 x = midRow(s, 0, i, at, n, perMetre), y = midRow(s, 1, i, at, n, perMetre),
+             z = midRow(s, 2, i, at, n, perMetre);
+  const F8 xy = x.y + y.x, xz = x.z + z.x, yz = y.z + z.y;
+  return tableAt(*s.table,
+                 all(2) * (x.x * x.x + y.y * y.y + z.z * z.z) + xy * xy + xz * xz + yz * yz);
+}
+
 struct PairWeights {
   F8 c, way;  ///< way times g is -c x / 2
 };
 /// Of eight pairs from e on.
-SC_INLINE PairWeights pairWeights(const PairViscositySweep& s, const Tensor8& own, F8 mu, int e) {
+SC_INLINE PairWeights pairWeights(const PairViscositySweep& s, const Tensor8& own, int i, int e) {
   const int* at = s.pairs.index + e;
-  const F8 other = gather(s.viscosity, at), r = load(s.r + e);
-  const F8 x = load(s.pairs.gx + e), y = load(s.pairs.gy + e), z = load(s.pairs.gz + e);
-  const F8 square = x * x + y * y + z * z;
+  const F8 r = load(s.r + e);
+  const F8x3 g{load(s.pairs.gx + e), load(s.pairs.gy + e), load(s.pairs.gz + e)};
+  const F8 square = g.x * g.x + g.y * g.y + g.z * g.z, size = root(square);
   const F8x3 straight = gather3<8>(s.evenness, at), mixed = gather3<8>(s.evenness + 4, at);
   const Tensor8 both2{own.xx + straight.x, own.yy + straight.y, own.zz + straight.z,
                       own.xy + mixed.x,    own.xz + mixed.y,    own.yz + mixed.z};
   const F8 even =
-      largest(all(2 * s.leastEven), twice(both2, x, y, z) / largest(square, all(1e-30f)));
-  // harmonic: the thinner of two layers decides the stress (Cleary & Monaghan 1999)
-  const F8 both = largest(all(s.leastPair), all(2) * mu * other / (mu + other));
-  const F8 weight = all(s.scale) * both * even * r / (r * r + all(s.eta2));
-  return {weight * root(square), all(0.5f) * weight * r};
+      largest(all(2 * s.leastEven), twice(both2, g.x, g.y, g.z) / largest(square, all(1e-30f)));
+  const F8 mu = largest(all(s.leastPair), pairViscosityAt(s, i, at, g, size, r));
+  const F8 weight = all(s.scale) * mu * even * r / (r * r + all(s.eta2));
+  return {weight * size, all(0.5f) * weight * r};
 }
 SC_INLINE Tensor8 evennessOf(const PairViscositySweep& s, int i) {
   const float* b = s.evenness + 8 * i;
@@ -208,12 +249,11 @@ SC_INLINE F8 rowTimes(const PairViscositySweep& s, int r, int i, const int* at, 
 
 SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
-    const F8 mu = all(s.viscosity[i]);
     const Tensor8 own = evennessOf(s, i);
     F8 total = all(0);
     D8 x, y, z;
     for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
-      const PairWeights w = pairWeights(s, own, mu, e);
+      const PairWeights w = pairWeights(s, own, i, e);
       store(s.c + e, w.c);
       total += w.c;
       if (!s.slopes) continue;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "bolus/viscosity_table.h"
 #include "core/vec.h"
 
 namespace swallowclip::bolus {
@@ -105,13 +106,17 @@ struct Tensors {
   const float *operator[](int i) const { return &of[8 * static_cast<std::size_t>(i)]; }
 };
 
-/// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu harmonic and at least leastPair, even =
-/// n.(B_i + B_j).n / 2 along the pair, at least leastEven; diagonal_i = sum c_ij. With slopes G
-/// also transposed_i = -sum c_ij (G_i + G_j)^T x_ij / 2, summed as GradientSweep.
+/// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu at least leastPair, even =
+/// n.(B_i + B_j).n / 2 along the pair, at least leastEven; diagonal_i = sum c_ij. Without
+/// `constant` mu is that of the shear rate half way, where the gradient is (F_i + F_j) / 2, but
+/// along the pair (v_i - v_j) / r. With slopes G also transposed_i = -sum c_ij (G_i + G_j)^T x_ij /
+/// 2, summed as GradientSweep.
 struct PairViscositySweep {
   PairLists pairs;
-  const float *r, *viscosity;
-  const float *evenness;  ///< Tensors
+  const float *r, *evenness;  ///< [pair]; Tensors
+  float constant;             ///< mu of all; 0: by the next two
+  const ViscosityTable *table;
+  const float *field;  ///< [slot][3][4] rows of F, 1/s, and behind each that component of v, m/s
   float scale, leastPair, eta2, leastEven;
   float *c, *diagonal;
   const float *slopes;  ///< G^T: [slot][3][4], rows; or null

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "bolus/velocity_gradient.h"
 #include "core/simd.h"
 
 namespace swallowclip::bolus {
@@ -15,9 +16,6 @@ constexpr double kSoftening = 1e-4;  // eta^2 / (H/2)^2 against division by zero
 // what they really sum to scales them. Not below this, assumed (0.5 to 0.9): at a free surface
 // there is nothing to be completed.
 constexpr float kLeastEvenness = 0.8f;
-// Norm of the inverse moment matrix above which a neighbourhood is too one-sided to be corrected,
-// assumed (7 to 13): a full one has 1.7, a half one 3.5, one at an edge 7, at a corner 14.
-constexpr double kMostInverse = 10;
 constexpr float kIsotropic = 2.5f;       // see evenOut
 constexpr double kLeastPairShare = 0.2;  // of a pair's own weight, keeps it positive, assumed
 constexpr int kCap = 300;                // iterations, assumed (100 to 500)
@@ -33,45 +31,6 @@ constexpr int kMostSteps = 4;
 constexpr double kMostLambda = 0.5;
 constexpr double kSmallSpeed_ms = 1e-6;  // residual speed nobody sees, assumed
 }  // namespace
-
-Mat3 velocityGradient_s(const Flow& f, const SlopeSweep& slopes, const Vec3& v, int i) {
-  const WallSample& w = f.wall(i);
-  float sums[9];
-  slopes.run(i, sums);
-  Mat3 gradient =
-      Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(sums).cast<double>();
-  const float* t = f.neighbours.moment[i];
-  Mat3 moment;
-  moment << t[0], t[4], t[5], t[4], t[1], t[6], t[5], t[6], t[2];
-  const double steep = w.gradLambda.norm();
-  // Outside, the velocity goes on linearly through the wall's: (v_wall - v) / distance along n. Of
-  // such a gradient the missing part of the sum, int_out (y - x).n dW/dn dV, is by parts the share
-  // lambda of the kernel plus distance times grad lambda.
-  if (w.friction > 0 && w.area > 0 && steep > 0) {
-    const double share = std::min(w.lambda + steep * w.area / w.friction, 1.0);
-    gradient +=
-        share / (w.area * steep) * (w.frictionVelocity - w.friction * v) * w.gradLambda.transpose();
-    moment += share / (steep * steep) * w.gradLambda * w.gradLambda.transpose();
-  }
-  // What the same sums make of a linear field (Bonet & Lok 1999, sec. 3.3): among disordered
-  // particles 10 % off, which a stiff plug would take for shear.
-  Mat3 inverse;
-  double determinant = 0;
-  bool fine = false;
-  moment.computeInverseAndDetWithCheck(inverse, determinant, fine, 1e-9);
-  fine = fine && determinant > 0 && inverse.norm() < kMostInverse;
-  return fine ? Mat3(gradient * inverse) : gradient;
-}
-Mat3 gradientBeforeWall_s(const WallSample& w, const Vec3& v, const Mat3& gradient) {
-  const double steep = w.gradLambda.norm();
-  if (!(w.friction > 0 && w.area > 0 && steep > 0)) return gradient;
-  const Vec3 n = w.gradLambda / steep;
-  return gradient + ((w.frictionVelocity - w.friction * v) / w.area - gradient * n) * n.transpose();
-}
-double shearRate_s(const Mat3& gradient) {
-  const Mat3 d = 0.5 * (gradient + gradient.transpose());
-  return std::sqrt(2 * d.squaredNorm());
-}
 
 // The second moment M of the weights, identity when full, becomes what evens it out. With fourth
 // moments as of isotropic neighbours, weights changed by n.B.n have the moment (tr B + 2 B) / 5
@@ -98,13 +57,16 @@ void Viscosity::begin(Step& s) {
   const Flow& f = s.flow;
   const int n = f.count();
   wallDrag_.assign(s.velocities.size(), 0.0);
-  if (shearRates_.own_s.size() != s.velocities.size()) shearRates_.forget(s.velocities.size());
+  if (shear_.own_s.size() != s.velocities.size()) shear_.forget(s.velocities.size());
   drag_ms2_.resize(s.velocities.size(), Vec3::Zero());
   if (s.scheme.override_Pas > 0)
     s.constant_Pas = s.scheme.override_Pas;
   else if (s.fluid.model == RheologyModel::newtonian)
     s.constant_Pas = s.fluid.viscosity_Pas;
-  if (s.constant_Pas == 0) findRates(f, s.velocities);
+  if (s.constant_Pas == 0) {
+    table_.make(s.fluid);
+    findRates(f, s.velocities);
+  }
   waiting_.since_s += s.dt_s;
   ++waiting_.steps;
   s.pairs_s = canWait(s) ? 0 : waiting_.since_s;
@@ -112,14 +74,13 @@ void Viscosity::begin(Step& s) {
   force_.resize(3 * n);
   right_.resize(n);
   inverse_.resize(n);
-  for (auto* a : {&mu_, &own_}) {
-    a->resize(n + 1);
-    (*a)[n] = 1;
-  }
+  own_.resize(n + 1);
+  own_[n] = 1;
   evenness_.shape(n, 1);
   if (waiting_.rate_s == 0 && knowsTransposed(s)) findSlopes(f, s.velocities);
   const bool transposed = s.pairs_s > 0 && knowsTransposed(s) && !slopes_s_.empty();
   transposed_.assign(transposed ? 12 * (n + std::size_t{1}) : 0, 0.f);
+  field_.assign(s.pairs_s > 0 && s.constant_Pas == 0 ? 12 * (n + std::size_t{1}) : 0, 0.f);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
 }
 
@@ -137,8 +98,9 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     const int p = s.flow.particle(i);
     const WallSample& w = s.flow.wall(i);
-    viscosity_[i] = viscosityAt(shearRates_.own_s[p]);
-    mu_[i] = static_cast<float>(viscosity_[i]);
+    viscosity_[i] = viscosityAt(shear_.own_s[p]);
+    if (!field_.empty())
+      std::copy_n(shear_.field[p].data(), 12, &field_[12 * static_cast<std::size_t>(i)]);
     if (s.pairs_s > 0) evenOut(w, s.flow.neighbours.moment[i], evenness_[i]);
     inertia_[i] = s.scheme.slip ? 1 : 1 - std::min(w.lambda, kMostLambda);
     right_[i] = s.velocities[p];
@@ -146,8 +108,7 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
       // Across a slit with no room for a second particle the profile is not resolved: there the
       // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
       const double slit = viscosity_[i] * 12 / (w.gap_m * w.gap_m);
-      const double shear =
-          viscosityAt(shearRates_.wall_s[p]) * kWallFactor * w.friction / inertia_[i];
+      const double shear = viscosityAt(shear_.wall_s[p]) * kWallFactor * w.friction / inertia_[i];
       wallDrag_[p] = s.dt_s / s.fluid.density_kgm3 * std::max(shear, slit);
       right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
     }
@@ -169,8 +130,10 @@ float Viscosity::weighPairs(const Step& s) {
   const PairViscositySweep sweep{
       f.lists(),
       f.neighbours.r.data(),
-      mu_.data(),
       evenness_.of.data(),
+      static_cast<float>(s.constant_Pas),
+      &table_,
+      field_.data(),
       static_cast<float>(s.pairs_s / s.fluid.density_kgm3),  // 2, and half of two evennesses
       static_cast<float>(s.scheme.leastPair_Pas),
       static_cast<float>(kSoftening * s.support_m * s.support_m / 4),
@@ -296,7 +259,7 @@ bool Viscosity::isStableExplicitly(const Step& s) const {
   return s.dt_s * most / s.fluid.density_kgm3 <= kExplicitShare * s.support_m * s.support_m / 4;
 }
 
-void Viscosity::ShearRates::forget(std::size_t particles) {
+void Viscosity::Shear::forget(std::size_t particles) {
   own_s.assign(particles, NAN);
   wall_s.assign(particles, NAN);
 }
@@ -311,14 +274,16 @@ void Viscosity::look(const Flow& f, const std::vector<Vec3>& v) {
 // Those that are not known yet.
 void Viscosity::findRates(const Flow& f, const std::vector<Vec3>& v) {
   look(f, v);
+  shear_.field.resize(v.size());
   const SlopeSweep slopes{f.lists(), v_.data()};
   f.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
-      if (!std::isnan(shearRates_.own_s[p])) continue;
+      if (!std::isnan(shear_.own_s[p])) continue;
       const Mat3 gradient = velocityGradient_s(f, slopes, v[p], i);
-      shearRates_.own_s[p] = shearRate_s(gradient);
-      shearRates_.wall_s[p] = shearRate_s(gradientBeforeWall_s(f.wall(i), v[p], gradient));
+      shear_.field[p] << gradient.cast<float>(), v[p].cast<float>();
+      shear_.own_s[p] = shearRate_s(gradient);
+      shear_.wall_s[p] = shearRate_s(gradientBeforeWall_s(f.wall(i), v[p], gradient));
     }
   });
 }
@@ -363,7 +328,7 @@ void Viscosity::rub(const Step& s, int begin, int end) {
 // The next step's viscosities follow from this field, before pressure has its say: what it does to
 // single particles is noise, which would thin a fluid that ought to be stiff.
 void Viscosity::end(const Step& s) {
-  shearRates_.forget(s.velocities.size());
+  shear_.forget(s.velocities.size());
   if (s.constant_Pas == 0) findRates(s.flow, s.velocities);
 }
 

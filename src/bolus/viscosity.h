@@ -80,12 +80,15 @@ class Viscosity {
   const std::vector<double>& wallDrag() const { return wallDrag_; }
 
   /// [particle] of the last step: what the next one's viscosities follow from.
-  struct ShearRates {
+  struct Shear {
     std::vector<double> own_s;   ///< 1/s, at the particle; NAN: not yet known
     std::vector<double> wall_s;  ///< 1/s, half way to its wall
+    /// Gradient (1/s) and velocity (m/s), row by row as PairViscositySweep wants them; empty where
+    /// viscosity is constant.
+    std::vector<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>> field;
     void forget(std::size_t particles);
   };
-  ShearRates& shearRates() { return shearRates_; }
+  Shear& shear() { return shear_; }
 
   /// Neighbours of a thin fluid that exchange next to nothing in a step do it once in a few, for
   /// all of that time (multiple time steps, Tuckerman et al. 1992).
@@ -114,27 +117,21 @@ class Viscosity {
   Report solve(const Step& step);
   void addTransposed(const Step& step, int begin, int end);
 
-  ShearRates shearRates_;
+  Shear shear_;
   Waiting waiting_;
-  std::vector<Vec3> drag_ms2_;               // [particle]
-  std::vector<Mat3f> slopes_s_;              // [particle]
-  std::vector<Mat3f> endSlopes_s_;           // [slot]
-  std::vector<float> transposed_;            // [slot + 1][3][4] slopes, transposed; empty: none
-  std::vector<double> wallDrag_;             // [particle]
-  std::vector<double> viscosity_, force_;    // [slot]; [slot][3]
-  std::vector<double> inertia_;              // [slot], see above
-  std::vector<float> mu_;                    // [slot + 1]
+  std::vector<Vec3> drag_ms2_;             // [particle]
+  std::vector<Mat3f> slopes_s_;            // [particle]
+  std::vector<Mat3f> endSlopes_s_;         // [slot]
+  std::vector<float> transposed_;          // [slot + 1][3][4] slopes, transposed; empty: none
+  std::vector<double> wallDrag_;           // [particle]
+  std::vector<double> viscosity_, force_;  // [slot]; [slot][3]
+  std::vector<double> inertia_;            // [slot], see above
+  std::vector<float> field_;               // [slot + 1][12] of Shear; empty: not needed
+  ViscosityTable table_;
   Tensors evenness_;                         // [slot + 1]
   std::vector<Vec3> right_;                  // [slot] right side
   std::vector<float> pair_, own_, inverse_;  // [pair]; [slot + 1] inertia and drag; [slot] sum of
                                              // the pairs' weights, then 1 / diagonal
   Floats3 v_, residual_, direction_, product_;  // [slot + 1]
 };
-
-/// dv_a / dx_b (1/s) at a slot that moves with `velocity`, walls included.
-Mat3 velocityGradient_s(const Flow& flow, const SlopeSweep& slopes, const Vec3& velocity, int slot);
-/// The same half way to the wall: along its normal the velocity changes as from here to it.
-Mat3 gradientBeforeWall_s(const WallSample& wall, const Vec3& velocity, const Mat3& gradient_s);
-/// sqrt(2 D:D) (1/s) of it.
-double shearRate_s(const Mat3& velocityGradient_s);
 }  // namespace swallowclip::bolus

@@ -71,6 +71,17 @@ SC_INLINE F8x3 gather3(const float* p, const int* at) {
           __builtin_shufflevector(xy, xyNext, 2, 3, 10, 11, 6, 7, 14, 15),
           __builtin_shufflevector(z, zNext, 0, 1, 8, 9, 4, 5, 12, 13)};
 }
+struct F8x4 {
+  F8 x, y, z, w;
+};
+/// The same with the fourth.
+template <int stride = 4>
+SC_INLINE F8x4 gather4(const float* p, const int* at) {
+  const F8x3 three = gather3<stride>(p, at);
+  F8 fourth;
+  for (int k = 0; k < kLanes; ++k) fourth[k] = p[stride * static_cast<long>(at[k]) + 3];
+  return {three.x, three.y, three.z, fourth};
+}
 /// Rows of eight floats at p[stride at[k]], turned into eight columns.
 template <int stride>
 SC_INLINE void gather8(const float* p, const int* at, F8 (&out)[8]) {
