@@ -2,7 +2,8 @@
 // Implicit viscosity for every fluid, thin or thick: the pairwise Laplacian of Morris, Fox & Zhu
 // (1997, eq. 22), with the walls' no-slip friction inside the same matrix-free conjugate gradients:
 //   (1 - lambda_i) a_i = 2 sum nu_ij V v_ij (x_ij . gradW_ij) / (r^2 + eta^2)
-//                        - 2 nu_wall friction (v_i - v_wall)
+//                        - 2 nu_wall friction (v_i - v_wall),
+// nu_ij that of the shear rate half way between the two (PairViscositySweep).
 // Where stress grows linearly from a wall, the right side is 1 - lambda times its gradient: pairs
 // give 2 tau(d) |grad lambda| + (1 - lambda - d |grad lambda|) tau', the wall takes 2 |grad lambda|
 // times the stress half way to it, tau(d) - tau' d / 2; so nu_wall is that of the shear rate there.
