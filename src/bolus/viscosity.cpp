@@ -57,13 +57,13 @@ void Viscosity::begin(Step& s) {
   const Flow& f = s.flow;
   const int n = f.count();
   wallDrag_.assign(s.velocities.size(), 0.0);
-  if (shear_.own_s.size() != s.velocities.size()) shear_.forget(s.velocities.size());
   drag_ms2_.resize(s.velocities.size(), Vec3::Zero());
   if (s.scheme.override_Pas > 0)
     s.constant_Pas = s.scheme.override_Pas;
   else if (s.fluid.model == RheologyModel::newtonian)
     s.constant_Pas = s.fluid.viscosity_Pas;
   if (s.constant_Pas == 0) {
+    if (shear_.own_s.size() != s.velocities.size()) shear_.forget(s.velocities.size());
     table_.make(s.fluid);
     findRates(f, s.velocities);
   }
@@ -92,13 +92,13 @@ bool Viscosity::canWait(const Step& s) const {
 
 // All that a slot has to itself.
 void Viscosity::prepare(const Step& s, int begin, int end) {
-  const auto viscosityAt = [&](double rate_s) {
-    return s.constant_Pas > 0 ? s.constant_Pas : apparentViscosity_Pas(s.fluid, rate_s);
+  const auto viscosityAt = [&](const std::vector<double>& rate_s, int p) {
+    return s.constant_Pas > 0 ? s.constant_Pas : apparentViscosity_Pas(s.fluid, rate_s[p]);
   };
   for (int i = begin; i < end; ++i) {
     const int p = s.flow.particle(i);
     const WallSample& w = s.flow.wall(i);
-    viscosity_[i] = viscosityAt(shear_.own_s[p]);
+    viscosity_[i] = viscosityAt(shear_.own_s, p);
     if (!field_.empty())
       std::copy_n(shear_.field[p].data(), 12, &field_[12 * static_cast<std::size_t>(i)]);
     if (s.pairs_s > 0) evenOut(w, s.flow.neighbours.moment[i], evenness_[i]);
@@ -108,7 +108,7 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
       // Across a slit with no room for a second particle the profile is not resolved: there the
       // walls brake at least as in plane Poiseuille flow, 12 nu / gap^2.
       const double slit = viscosity_[i] * 12 / (w.gap_m * w.gap_m);
-      const double shear = viscosityAt(shear_.wall_s[p]) * kWallFactor * w.friction / inertia_[i];
+      const double shear = viscosityAt(shear_.wall_s, p) * kWallFactor * w.friction / inertia_[i];
       wallDrag_[p] = s.dt_s / s.fluid.density_kgm3 * std::max(shear, slit);
       right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
     }
@@ -328,8 +328,12 @@ void Viscosity::rub(const Step& s, int begin, int end) {
 // The next step's viscosities follow from this field, before pressure has its say: what it does to
 // single particles is noise, which would thin a fluid that ought to be stiff.
 void Viscosity::end(const Step& s) {
+  if (s.constant_Pas > 0) {
+    shear_ = {};
+    return;
+  }
   shear_.forget(s.velocities.size());
-  if (s.constant_Pas == 0) findRates(s.flow, s.velocities);
+  findRates(s.flow, s.velocities);
 }
 
 void Viscosity::accept(const Flow& f) {

@@ -80,12 +80,12 @@ class Viscosity {
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
   const std::vector<double>& wallDrag() const { return wallDrag_; }
 
-  /// [particle] of the last step: what the next one's viscosities follow from.
+  /// [particle] of the last step: what the next one's viscosities follow from. Empty where
+  /// viscosity is constant.
   struct Shear {
     std::vector<double> own_s;   ///< 1/s, at the particle; NAN: not yet known
     std::vector<double> wall_s;  ///< 1/s, half way to its wall
-    /// Gradient (1/s) and velocity (m/s), row by row as PairViscositySweep wants them; empty where
-    /// viscosity is constant.
+    /// Gradient (1/s) and velocity (m/s), row by row as PairViscositySweep wants them.
     std::vector<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>> field;
     void forget(std::size_t particles);
   };
