@@ -189,8 +189,9 @@ SC_INLINE F8x3 midRow(const PairViscositySweep& s, int r, int i, const int* at, 
 
 SC_INLINE F8 tableAt(const ViscosityTable& t, F8 square) {
   constexpr int kPart = ViscosityTable::kPartBits;
+  // in this order what is no number becomes the least
   const F8 within =
-      smallest(all(ViscosityTable::kMost), largest(all(ViscosityTable::kLeast), square));
+      smallest(largest(square, all(ViscosityTable::kLeast)), all(ViscosityTable::kMost));
   I8 word;
   std::memcpy(&word, &within, sizeof word);
   const I8 node = (word >> kPart) - allInt(t.first);
