@@ -37,8 +37,8 @@ struct SqueezedEdge {
 };
 /// From the half length `start` before they close, and the mean one `mean` at a gap `gap`. How the
 /// pressure meets the edge is a fit (within 0.02 gaps for mean / gap from 4 to 9) to solutions of
-/// Stokes' equations of strips, tests/verify/squeezed_edge_test.cpp; a disc's rim is taken to be like
-/// them.
+/// Stokes' equations of strips, tests/verify/squeezed_edge_test.cpp; a disc's rim is taken to be
+/// like them.
 SqueezedEdge squeezedEdge_m(double start, double mean, double gap);
 
 /// Of a spherical cap that meets its floor under an angle (rad): mean height over the floor divided
