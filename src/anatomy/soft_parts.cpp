@@ -10,7 +10,10 @@
 namespace swallowclip::anatomy {
 namespace {
 constexpr double kFloorRise_m = 12e-3, kFloorFall_m = 22e-3;  // floor of the mouth, assumed
-constexpr double kFoldCover_m = 3e-4;                         // assumed, 0.2-0.5 mm
+// Where volume makes the floor go: down between mandible and hyoid. Away from the dorsum instead it
+// would run forward, into the symphysis. Assumed (0 to 20 degrees backwards).
+const Vec3 kSag = Vec3(0, 0.17, -1).normalized();
+constexpr double kFoldCover_m = 3e-4;                  // assumed, 0.2-0.5 mm
 constexpr double kFoldsFrom = 0.52, kFoldsTo = 0.595;  // of the vocal folds in the inlet's depth
 constexpr int kUnderside = 11;  // vertices from the tongue's lateral edge round to the other one
 
@@ -103,11 +106,11 @@ std::vector<Vec3> SoftParts::tongue(const LumenSheets& sheets, const SoftPose& p
     const Vec3 top = sheets.m[lumen_.index(r, nc / 2)];
     Vec3 floor(0, def_.tongueFloorY(at), def_.tongueFloorZ(at));
     floor += pose.hyoidShift_m * smoothstep((at - 0.005) / 0.085);
-    const Vec3 down = (floor - top).normalized();
     const double free = smoothstep(at / 0.045) * (1 - smoothstep((at - 0.080) / 0.024));
-    floor += down * bulge_m * free;
+    floor += bulge_m * free * kSag;
+    const Vec3 down = (floor - top).normalized();
     for (int c = 0; c < nc; ++c) p.push_back(sheets.m[lumen_.index(r, c)]);
-    const double half = widthScale_ * def_.tongueHalfWidth(at) + 0.35 * bulge_m * free;
+    const double half = widthScale_ * def_.tongueHalfWidth(at);
     for (int k = 1; k <= kUnderside; ++k) {
       // cubic Bezier from the lateral edge over the side to the midline, then mirrored
       const double side = k <= (kUnderside + 1) / 2 ? 1 : -1;

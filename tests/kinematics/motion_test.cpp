@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "airway/interpenetration.h"
+#include "anatomy/anatomy_builder.h"
 #include "kinematics/choreography.h"
 #include "kinematics/events.h"
+#include "scene/anatomy_file.h"
 #include "scene/lumen_file.h"
 #include "scene/swallow_file.h"
 
@@ -78,6 +80,26 @@ TEST_P(Motion, TongueKeepsItsVolumeAndWallsNeverCross) {
     EXPECT_LE(hit.depth_m, 0.5e-3)
         << "frame " << k << ", vertex " << hit.vertex << ", s "
         << adult().lumen.skin().s_m[hit.vertex] << ", u " << adult().lumen.skin().u[hit.vertex];
+  }
+  RecordProperty("deepest_mm", fmt::format("{:.3f}", worst * 1e3));
+}
+
+// The dorsum is prescribed and the volume kept, so the floor gives way: not into bone.
+TEST_P(Motion, TheTongueStaysOutOfTheMandible) {
+  static const auto bones =
+      anatomy::buildRigidParts(scene::loadAnatomyDef(kScenes / "adult/anatomy.json").value());
+  ASSERT_TRUE(bones) << bones.error().text();
+  const TriMesh& mandible = bones->find("mandible")->mesh;
+  const auto baked = kinematics::bake({}, adult().lumen, adult().soft, swallow(GetParam()), 34);
+  const auto& tongue = baked.sequence.structures.front();
+  ThreadPool pool(2);
+  double worst = 0;
+  for (int k = 0; k < baked.sequence.frames(); k += 2) {
+    const auto hit = airway::depthInside({tongue.frames[k], tongue.triangles}, mandible, pool);
+    worst = std::max(worst, hit.depth_m);
+    EXPECT_LE(hit.depth_m, 1.2e-3)
+        << "frame " << k << ", at (" << tongue.frames[k][std::max(0, hit.vertex)].transpose()
+        << ") m";
   }
   RecordProperty("deepest_mm", fmt::format("{:.3f}", worst * 1e3));
 }
