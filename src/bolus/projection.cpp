@@ -25,7 +25,8 @@ constexpr float kWallMirror = 2;
 // without effect.
 constexpr float kMostLambda = 0.5;  // counted at most, assumed (0.4 to 0.6): an edge has 0.4
 // No particle may be left with more than this, however good the mean: in a closing slit some few
-// particles far from a solution are thrown out of it at 100 m/s. Assumed (0.5 to 5 %).
+// particles far from a solution are thrown out of it at 100 m/s. Assumed (0.5 to 5 %). Of steps
+// shorter than kCorrection_s in proportion: as much in each would add up.
 constexpr double kWorstLeft = 0.02;
 // What is compressed already spreads within this time, or within the step if that is longer. Within
 // every step, however short, it would do so at a speed that shortens the next step, and so on to
@@ -178,8 +179,9 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
   Asked all;
   for (const Asked& part : asked_) all.add(part);
   const double share = dt_s * dt_s / n;
+  const double worstLeft = kWorstLeft * std::min(1.0, dt_s / kCorrection_s);
   tolerance = std::clamp(tolerances.share * all.size * share, kFloor * tolerance, tolerance);
-  if (least == 0 && all.over * share < tolerance && all.most * dt_s * dt_s < kWorstLeft) {
+  if (least == 0 && all.over * share < tolerance && all.most * dt_s * dt_s < worstLeft) {
     report.meanError = all.over * share;  // no pressure at all is good enough
     warmK.assign(warmK.size(), 0.0);
     return report;
@@ -200,7 +202,7 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
     }
     report.meanError = left.residual / n * dt_s * dt_s;
     if (report.iterations >= least && report.meanError < tolerance &&
-        left.most * dt_s * dt_s < kWorstLeft)
+        left.most * dt_s * dt_s < worstLeft)
       break;
     report.atCap = report.iterations >= cap;
     if (report.atCap) break;
