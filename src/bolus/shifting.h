@@ -25,7 +25,11 @@ class Shifting {
   /// `moving` becomes `velocities` plus the velocity of shifting (m/s, [particle]). Nothing happens
   /// near a free surface, whose own gradient is none to be evened out. `then` is called when those
   /// of its slots are done.
-  void shift(const Flow& flow, double spacing_m, const std::vector<Vec3>& velocities,
+  struct Step {
+    double dt_s, spacing_m;
+    bool mixing = false;  ///< also what does not flow
+  };
+  void shift(const Flow& flow, const Step& step, const std::vector<Vec3>& velocities,
              std::vector<Vec3>& moving, std::span<Mat3f> slopes_s, const Projection::Range& then);
 
  private:

@@ -13,7 +13,6 @@ namespace {
 constexpr std::array<const char*, 2> kSolverNames{"dfsph", "wcsph"};
 constexpr int kMostParticles = 2'000'000;  // what this program is made for, times a hundred
 // Settling: honey-like, so that thin fluids do not slosh and yield fluids do come to rest.
-constexpr double kSettlingViscosity_Pas = 0.5;  // assumed (0.1 to 1)
 // At rest means drifting, not speed: the projections leave a flicker of about a third of what
 // gravity adds in one step (measured: mean 1-3 mm/s), which leads nowhere.
 constexpr double kDriftWindow_s = 0.05;  // assumed (0.02 to 0.1)
@@ -115,7 +114,7 @@ Result<void> Solver::place(double t_s, std::vector<Vec3> positions, std::vector<
 Result<RelaxReport> Solver::relax(double t_s, double longest_s) {
   Impl& s = *impl_;
   s.frozen = true;
-  s.settlingViscosity_Pas = kSettlingViscosity_Pas;
+  s.settlingViscosity_Pas = Impl::kSettlingViscosity_Pas;
   s.meetWalls(t_s);
   RelaxReport report;
   Result<void> ok;

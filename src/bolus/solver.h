@@ -111,6 +111,10 @@ class Solver {
   Result<void> seed(double t_s, const SeedRange& range);
   /// Starts from given places instead (tests, verification).
   Result<void> place(double t_s, std::vector<Vec3> positions, std::vector<Vec3> velocities = {});
+  /// Puts particles that stand on a lattice into disorder, as fluid is: each is moved by up to a
+  /// third of a spacing, then they shift apart until they lie evenly. A lattice that a flow
+  /// stretches resists it, and then buckles. Right after seed or place; velocities stay.
+  Result<void> mix(double t_s);
   /// Lets the fluid come to rest between the walls as they are at t, frozen, for at most
   /// `longest_s` of simulated time; ends with all velocities zero.
   Result<RelaxReport> relax(double t_s, double longest_s = 1.5);

@@ -207,7 +207,7 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   report.rate = projection.divergenceFree(
       flow, particles.densityRatio, dt_s, v,
       [&](int begin, int end) { shifting.look(flow, particles.densityRatio, v, begin, end); });
-  shifting.shift(flow, def.spacing_m, v, moving, viscosity.endSlopes_s(),
+  shifting.shift(flow, {dt_s, def.spacing_m, mixing}, v, moving, viscosity.endSlopes_s(),
                  [&](int begin, int end) { projection.startFrom(flow, moving, begin, end); });
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
   const double fastestCorrection_ms = kLongestCorrection * def.spacing_m / dt_s;

@@ -123,6 +123,7 @@ double volumeOf(const FillDef& fill, const Domain& domain) {
   }
   return domain.volume_m3();
 }
+}  // namespace
 
 Vec3 startVelocity(const CaseDef& def, const Vec3& p) {
   if (def.start == StartKind::rotation) return def.startRate * Vec3::UnitZ().cross(p);
@@ -131,7 +132,6 @@ Vec3 startVelocity(const CaseDef& def, const Vec3& p) {
   return def.startRate * Vec3(std::sin(kx * p.x()) * std::cos(ky * p.y()),
                               -kx / ky * std::cos(kx * p.x()) * std::sin(ky * p.y()), 0);
 }
-}  // namespace
 
 Result<Start> fillDomain(const CaseDef& def, const Domain& domain, double spacing_m) {
   Start start;

@@ -16,5 +16,7 @@ struct Start {
   double spacing_m = 0;
 };
 
+/// At a place in the domain's own axes, beside that of its fill.
+Vec3 startVelocity(const CaseDef& def, const Vec3& p);
 Result<Start> fillDomain(const CaseDef& def, const Domain& domain, double spacing_m);
 }  // namespace swallowclip::verify

@@ -54,14 +54,20 @@ Snapshot snapshot(const CaseDef& def, const Domain& domain, const bolus::Solver&
 
 Result<Start> relaxed(const CaseDef& def, const Domain& domain, bolus::BolusDef bolusDef,
                       Start start) {
-  if (def.relax_s <= 0) return start;
   // A full room has nowhere to settle: a driving force would only stir it.
   const bool full =
       std::ranges::any_of(def.fill, [](const FillDef& f) { return f.kind == FillKind::domain; });
   if (full) bolusDef.gravity_ms2.setZero();
   bolus::Solver solver(bolusDef, domain.walls(), 1);
   if (auto ok = solver.place(0, start.positions); !ok) return std::unexpected(ok.error());
-  if (auto ok = solver.relax(0, def.relax_s); !ok) return std::unexpected(ok.error());
+  if (auto ok = solver.mix(0); !ok) return std::unexpected(ok.error());
+  if (def.relax_s > 0)
+    if (auto ok = solver.relax(0, def.relax_s); !ok) return std::unexpected(ok.error());
+  for (std::size_t i = 0; i < start.positions.size(); ++i) {
+    const Vec3 &from = start.positions[i], &to = solver.particles().positions[i];
+    start.velocities[i] += domain.toWorld(startVelocity(def, domain.fromWorld(to)) -
+                                          startVelocity(def, domain.fromWorld(from)));
+  }
   start.positions = solver.particles().positions;
   return start;
 }
