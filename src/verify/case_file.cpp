@@ -288,6 +288,13 @@ Result<void> checkGeometry(const CaseDef& def) {
       return std::unexpected(start.error());
   }
   for (const CheckDef& check : def.checks)
+    if (!def.samples_s.empty() && check.from_s > def.samples_s.back())
+      return usageError(
+          "",
+          fmt::format("the check of {} begins at {:.4g} s, the last sample is at {:.4g} s",
+                      check.quantity.kind, check.from_s, def.samples_s.back()),
+          "Give from_s a time that is looked at.");
+  for (const CheckDef& check : def.checks)
     if (const auto made = makeReference(def, check.reference); !made)
       return std::unexpected(made.error());
   return {};

@@ -49,6 +49,8 @@ TEST(CaseFile, RefusesWhatCannotBeRun) {
   expectRefused(spoilt("[20, 20, 40]", "[20, 1e99, 40]"), "size_mm");
   expectRefused(spoilt("[0.01, 0.02]", "[0.02, 0.01]"), "samples_s");
   expectRefused(spoilt("[0.01, 0.02]", "[0.01, 0.2]"), "samples_s");
+  expectRefused(spoilt("\"tolerance\": 0.001", "\"tolerance\": 0.001, \"from_s\": 0.03"),
+                "begins at 0.03 s, the last sample is at 0.02 s");
   expectRefused(spoilt("\"subset\"", "\"subest\""), "subest");
   expectRefused(spoilt("free-fall-speed", "free-fall-sped"), "free-fall-sped");
   expectRefused(spoilt("free-fall-speed", "hydrostatic"), "is a profile");
