@@ -21,14 +21,14 @@ class Shifting {
   /// The velocities that are there before; shift, when all slots have them.
   void look(const Flow& flow, const std::vector<double>& densityRatio,
             const std::vector<Vec3>& velocities, int begin, int end);
-  /// `slopes_s`, where not empty, become the gradients of the velocities, [slot].
-  /// `moving` becomes `velocities` plus the velocity of shifting (m/s, [particle]). Nothing happens
-  /// near a free surface, whose own gradient is none to be evened out. `then` is called when those
-  /// of its slots are done.
   struct Step {
     double dt_s, spacing_m;
     bool mixing = false;  ///< also what does not flow
   };
+  /// `slopes_s`, where not empty, become the gradients of the velocities, [slot].
+  /// `moving` becomes `velocities` plus the velocity of shifting (m/s, [particle]). Nothing happens
+  /// near a free surface, whose own gradient is none to be evened out. `then` is called when those
+  /// of its slots are done.
   void shift(const Flow& flow, const Step& step, const std::vector<Vec3>& velocities,
              std::vector<Vec3>& moving, std::span<Mat3f> slopes_s, const Projection::Range& then);
 

@@ -12,7 +12,6 @@ namespace swallowclip::bolus {
 namespace {
 constexpr std::array<const char*, 2> kSolverNames{"dfsph", "wcsph"};
 constexpr int kMostParticles = 2'000'000;  // what this program is made for, times a hundred
-// Settling: honey-like, so that thin fluids do not slosh and yield fluids do come to rest.
 // At rest means drifting, not speed: the projections leave a flicker of about a third of what
 // gravity adds in one step (measured: mean 1-3 mm/s), which leads nowhere.
 constexpr double kDriftWindow_s = 0.05;  // assumed (0.02 to 0.1)

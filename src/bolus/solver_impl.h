@@ -139,10 +139,12 @@ struct Solver::Impl {
   ColumnIndex columns;
   double filmDrainage_s = 0;  // speed of a draining film per acceleration along the wall
   double time_s = 0, lastStep_s = 0;
-  bool frozen = false;                                   // walls stand still (settling)
-  static constexpr double kSettlingViscosity_Pas = 0.5;  // assumed (0.1 to 1)
+  bool frozen = false;  // walls stand still (settling)
+  // Settling: honey-like, so that thin fluids do not slosh and yield fluids do come to rest;
+  // assumed (0.1 to 1).
+  static constexpr double kSettlingViscosity_Pas = 0.5;
   double settlingViscosity_Pas = 0;
-  bool mixing = false;
+  bool mixing = false;        // what does not flow is shifted, too
   double reach_s = INFINITY;  // longest step that contacts reach, where that is what limits it
   double stepShare = 1;       // of the step that speeds allow, less while steps leave compression
   double infeasible_s = 0;    // how long the pocket has been too small
