@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'00000009;  // "SWBC", layout 9
+constexpr std::uint64_t kMark = 0x53574243'0000000a;  // "SWBC", layout 10
 
 class Writer {
  public:
@@ -95,6 +95,8 @@ void all(Archive& a, Impl& s) {
   a(s.viscosity.shear().own_s);
   a(s.viscosity.shear().wall_s);
   a(s.viscosity.shear().field);
+  a(s.shifting.last().shift);
+  a(s.shifting.last().push);
   a(s.viscosity.drags_ms2());
   a(s.viscosity.slopes_s());
   a(s.viscosity.waiting());
@@ -179,6 +181,8 @@ Result<void> Solver::restore(std::string_view bytes) {
   all(in, s);
   const std::size_t n = s.particles.positions.size();
   s.projection.resize(static_cast<int>(n));
+  if (s.shifting.last().shift.size() != n || s.shifting.last().push.size() != n)
+    return refuse("its arrays do not fit");
   s.projection.full = s.def.full;
   s.projection.tolerances = {s.def.densityTolerance, s.def.rateTolerance, s.def.solveShare};
   WallField::Box box;

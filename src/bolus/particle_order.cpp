@@ -47,6 +47,7 @@ void Solver::Impl::sortParticles(std::vector<double>& more) {
   sort(contactsAt), sort(lastNearest), sort(projection.densityWarm()), sort(projection.rateWarm());
   sort(viscosity.shear().own_s), sort(viscosity.shear().wall_s);
   sort(viscosity.shear().field);
+  sort(shifting.last().shift), sort(shifting.last().push);
   sort(viscosity.drags_ms2()), sort(viscosity.slopes_s());
   neighbours.renumber();
 }

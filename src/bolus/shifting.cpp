@@ -8,32 +8,28 @@
 
 namespace swallowclip::bolus {
 namespace {
-// A. Less lets a start-up flow between plates, strained by 0.2 in all, end 2 to 3.6 % too slow
-// (80), 0.4 to 0.9 % with 120 and 200; from 150 on a column at rest is stirred by its own flicker.
-// Lind's own, 2 h |v|, is about 15 there. Assumed (100 to 140).
-constexpr double kStrength = 120;
+// A, of a shift that remembers: what it does in the end is 1 / (1 - kMemory) times as much. Less
+// lets a start-up flow between plates, strained by 0.2 in all, end 2 to 3.6 % too slow; more stirs
+// a column at rest by its own flicker. Lind's own, 2 h |v|, is about 15 there. Assumed (50 to 80).
+constexpr double kStrength = 60;
+constexpr double kMemory = 0.5;  // of the last shift, assumed (0.4 to 0.6)
 // Before a wall particles lie in layers, which are no strings: there shifting only leaves
 // compression. Assumed (0.05 to 0.15).
 constexpr double kStrengthAtWall = 8;
-// A rate_i dt, the share of the gradient that a step moves down, at most. With 0.4 neighbours begin
-// to overshoot each other, and the noise thins fluids that shear makes thin: between plates 16
-// spacings apart yielding fluids and power laws were 2.3 % off on average and 8 % at single
-// moments, a pipe is 1 % off with 0.3 and 9 % with 0.5. Assumed (0.2 to 0.35).
+// A rate_i dt, the share of the gradient that a step moves down, at most. From 0.4 on neighbours
+// overshoot each other, and the noise thins fluids that shear makes thin. Assumed (0.25 to 0.35).
 constexpr double kMostShare = 0.3;
-// More where a flow stretches more than it turns, which is what makes strings: without it vortices
-// lose 5 % too much of their energy, with it 0.6 %; with 0.5 a nearly closed wave of plates carries
-// 5 % too much. Assumed (0.2 to 0.4).
-constexpr double kMostStretched = 0.3;
-constexpr double kMixingShare = 0.3;   // the same of fluid that is mixed, assumed (0.2 to 0.4)
+// What is left of a push that takes back the last. Assumed (0.1 to 0.5): with 1 single moments of
+// peristaltic flows are 5 to 7 % off on average over a wave, with 0.5 and 0.25 none of ten above 2.
+constexpr double kTakenBack = 0.25;
 constexpr double kMostGradient = 0.1;  // of the concentration over a spacing, assumed (0.05 to 0.2)
 constexpr double kFullDensity = 0.97;  // of all neighbours: no free surface near, assumed
-
-/// 0 where a flow shears or turns, 1 where it only stretches.
-double stretchShare(const Mat3& slope_s, double rate_s) {
-  const Mat3 turn_s = slope_s - slope_s.transpose();
-  return std::max(0.0, 1 - turn_s.squaredNorm() / 2 / std::max(1e-30, rate_s * rate_s));
-}
 }  // namespace
+
+void Shifting::resize(int particles) {
+  for (Last* l : {&last_, &next_})
+    for (auto* a : {&l->shift, &l->push}) a->assign(particles, Vec3f::Zero());
+}
 
 void Shifting::begin(const Flow& f, std::vector<Vec3>& moving) {
   const int n = f.count();
@@ -42,6 +38,9 @@ void Shifting::begin(const Flow& f, std::vector<Vec3>& moving) {
   least_.resize(n);
   velocity_.shape(n, 1);
   moving.resize(f.walls.size());
+  for (auto* a : {&next_.shift, &next_.push}) a->resize(f.walls.size());
+  for (std::size_t p = 0; p < f.neighbours.slot.size(); ++p)
+    if (f.neighbours.slot[p] < 0) next_.shift[p] = next_.push[p] = Vec3f::Zero();
 }
 
 void Shifting::look(const Flow& f, const std::vector<double>& density, const std::vector<Vec3>& v,
@@ -62,6 +61,7 @@ void Shifting::shift(const Flow& f, const Step& s, const std::vector<Vec3>& v,
     for (int i = begin; i < end; ++i) {
       const int p = f.particle(i);
       moving[p] = v[p];
+      next_.shift[p].setZero();
       const bool inside = least_[i] >= kFullDensity;
       if (!inside && slopes_s.empty()) continue;
       const Mat3 slope_s = velocityGradient_s(f, slopes, v[p], i);
@@ -70,13 +70,21 @@ void Shifting::shift(const Flow& f, const Step& s, const std::vector<Vec3>& v,
       Vec3 gradient = s.spacing_m * (f.wall(i).gradLambda + f.neighbours.sumG.at(i).cast<double>());
       gradient *= kMostGradient / std::max(kMostGradient, gradient.norm());
       const double strength = f.wall(i).lambda > 0 ? kStrengthAtWall : kStrength;
-      const double rate_s = shearRate_s(slope_s);
-      const double most = kMostShare + kMostStretched * stretchShare(slope_s, rate_s);
-      const double share = std::min(strength * rate_s * s.dt_s, most);
-      const double moves = s.mixing ? std::max(kMixingShare, share) : share;
-      moving[p] -= moves / s.dt_s * s.spacing_m * gradient;
+      const double share =
+          s.mixing ? kMostShare : std::min(strength * shearRate_s(slope_s) * s.dt_s, kMostShare);
+      const Vec3 shift = kMemory * last_.shift[p].cast<double>() - share * gradient;
+      next_.shift[p] = shift.cast<float>();
+      moving[p] += s.spacing_m / s.dt_s * shift;
     }
     then(begin, end);
   });
+}
+
+Vec3 Shifting::calm(int p, const Vec3& move) {
+  const Vec3 shift = next_.shift[p].cast<double>();
+  Vec3 push = move - shift;
+  if (push.dot(last_.push[p].cast<double>()) < 0) push *= kTakenBack;
+  next_.push[p] = push.cast<float>();
+  return shift + push;
 }
 }  // namespace swallowclip::bolus

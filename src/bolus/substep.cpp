@@ -87,6 +87,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   active.assign(n, 1);
   lastNearest.assign(n, -1);
   projection.resize(static_cast<int>(n));
+  shifting.resize(static_cast<int>(n));
   viscosity.forget();
   wcsph.start();
   coating.start(motion->triangles.size(), n);
@@ -210,13 +211,13 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   shifting.shift(flow, {dt_s, def.spacing_m, mixing}, v, moving, viscosity.endSlopes_s(),
                  [&](int begin, int end) { projection.startFrom(flow, moving, begin, end); });
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
-  const double fastestCorrection_ms = kLongestCorrection * def.spacing_m / dt_s;
+  const double spacing_ms = def.spacing_m / dt_s;
   flow.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = flow.particle(i);
-      const Vec3 correction = moving[p] - v[p];
-      if (const double speed = correction.norm(); speed > fastestCorrection_ms)
-        moving[p] = v[p] + fastestCorrection_ms / speed * correction;
+      Vec3 correction = shifting.calm(p, (moving[p] - v[p]) / spacing_ms);
+      correction *= kLongestCorrection / std::max(kLongestCorrection, correction.norm());
+      moving[p] = v[p] + spacing_ms * correction;
       reached[i] = static_cast<float>(std::max(v[p].squaredNorm(), moving[p].squaredNorm()));
       particles.pressure_Pa[p] =  // per volume that the particle really has
           projection.stress_m2s2(flow, i) * def.fluid.density_kgm3 * particles.densityRatio[p];
@@ -245,6 +246,7 @@ double Solver::Impl::projectInReach(double dt_s, Substep& report) {
       reach_s = std::clamp(next_s, reach_s / 2, kReachGrowth * reach_s);
       if (reach_s > def.longestStep_s) reach_s = INFINITY;
       viscosity.accept(flow());
+      shifting.accept();
       return dt_s;
     }
     reach_s = dt_s;

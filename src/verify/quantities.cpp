@@ -11,7 +11,8 @@ namespace swallowclip::verify {
 namespace {
 // Pressures of neighbouring layers are tied to each other only through their sum (collocated
 // unknowns: a zigzag from layer to layer has almost no gradient), so two layers make one bin.
-constexpr double kPressureBin = 2;  // spacings
+constexpr double kPressureBin = 2;         // spacings
+constexpr std::size_t kSurfaceLayers = 3;  // a surface is read from, assumed (2 to 4)
 
 /// Position across the axis of a round room: tubes lie along x, all else stands along z.
 Vec3 fromAxis(const CaseDef& def, const Vec3& p) {
@@ -55,14 +56,14 @@ std::size_t rowCount(const Snapshot& s) {
   return 5;
 }
 
-/// Mean of the `count` largest, plus half a spacing from particle centres to the surface.
-double farthest(std::vector<double> values, std::size_t count, double spacing) {
+/// Mean of the `count` largest, plus half of the thickness that these fill.
+double farthest(std::vector<double> values, std::size_t count, double thickness) {
   if (values.empty()) return 0;
   count = std::clamp<std::size_t>(count, 1, values.size());
   std::ranges::nth_element(values, values.begin() + static_cast<long>(count) - 1, std::greater<>());
   double sum = 0;
   for (std::size_t k = 0; k < count; ++k) sum += values[k];
-  return sum / static_cast<double>(count) + spacing / 2;
+  return sum / static_cast<double>(count) + thickness / 2;
 }
 
 std::vector<double> along(const Snapshot& s, const QuantityDef& q, double sign) {
@@ -80,6 +81,8 @@ double mean(const Snapshot& s, const QuantityDef& q, auto&& value) {
 }
 
 /// Mean height of the topmost layer: as many particles as one layer of the floor has.
+/// Of fluid 10.3 spacings high the last 0.3 are no layer of their own: they lie among the one
+/// below, and a surface read from that alone would be as much too low. So several are looked at.
 double surfaceHeight(const Snapshot& s, const QuantityDef& q) {
   const DomainDef& d = s.def->domain;
   double area =
@@ -88,7 +91,9 @@ double surfaceHeight(const Snapshot& s, const QuantityDef& q) {
     area *= 1 - s.def->motion.speed.travel(s.time_s) / d.size_m[s.def->motion.axis];
   const auto layer = static_cast<std::size_t>(std::lround(area / (s.spacing_m * s.spacing_m)));
   const QuantityDef up{.kind = q.kind, .along = "z", .within_m = q.within_m};
-  return farthest(along(s, up, 1), layer, s.spacing_m);
+  std::vector<double> heights = along(s, up, 1);
+  const std::size_t layers = std::clamp<std::size_t>(heights.size() / layer, 1, kSurfaceLayers);
+  return farthest(std::move(heights), layers * layer, layers * s.spacing_m);
 }
 
 /// Beside a plug shear stress grows as consistency times rate^n: a straight line through rate^n of
