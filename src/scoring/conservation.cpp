@@ -82,6 +82,8 @@ std::optional<Conservation> countParticles(const frame::History& history) {
   c.filmFraction = film / start;
   c.meanDensityError = history.meta.meanDensityError;
   c.maxDensityError = history.meta.maxDensityError;
+  c.shareAboveTenPercent = history.meta.shareAboveTenPercent;
+  c.velocityClamps = history.meta.velocityClamps;
   return c;
 }
 }  // namespace swallowclip::scoring

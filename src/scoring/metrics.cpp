@@ -70,8 +70,12 @@ void addConservation(const Conservation& c, std::string& out) {
   if (c.coating_m3)
     fmt::format_to(to, "Coating on the walls: {:.3f} mL; volume error {:.1e}\n",
                    *c.coating_m3 * 1e6, c.volumeError);
-  fmt::format_to(to, "Density error: mean {:.2f} %, largest {:.2f} %\n", 100 * c.meanDensityError,
-                 100 * c.maxDensityError);
+  fmt::format_to(
+      to,
+      "Density error: mean {:.3f} %, largest {:.2f} %, above 10 % in {:.4f} % of particle-steps; "
+      "velocity clamps: {}\n",
+      100 * c.meanDensityError, 100 * c.maxDensityError, 100 * c.shareAboveTenPercent,
+      c.velocityClamps);
 }
 }  // namespace
 

@@ -2,6 +2,7 @@
 // What was measured on one history: numbers with their unit, frame and rule in words, the scores
 // they lead to, and why something could not be judged. Values only; render and cli read this.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -52,6 +53,8 @@ struct Conservation {
   int coated = 0;  ///< particles that lie on the walls as a whole, no longer as particles
   double swallowedFraction = 0, filmFraction = 0;
   double meanDensityError = 0, maxDensityError = 0;
+  double shareAboveTenPercent = 0;  ///< of particle-steps
+  std::int64_t velocityClamps = 0;  ///< times that a particle would have outrun its contacts
 
   /// On the walls, thinner than a particle; empty when the bolus coats none. Then swallowedFraction
   /// is one of volume, and volumeError what particles and walls hold against the start, as a share.
