@@ -167,8 +167,7 @@ Result<void> bench(const pipeline::RunOptions& options, pipeline::Progress& prog
   progress.print(fmt::format(
       "Seconds per simulated second, set-up excluded, {} thread(s). Calibration loop: {:.2f} ns a "
       "pair in one thread; beside each row (loop) in all at once. Each: a particle's step. Runs of "
-      "less "
-      "than {} s: the middle one of three.\n"
+      "less than {} s: the middle one of three.\n"
       "{:>8} {:>9} {:>8} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>9} {:>8} {:>9} {:>10}\n",
       options.jobs, calibration_ns(1), kShort_s, "spacing", "particles", "Pa.s", "tolerance",
       "wall", "cpu", "peer", "faster", "loop/ns", "each/us", "steps", "error", "iterations"));

@@ -80,7 +80,7 @@ double mean(const Snapshot& s, const QuantityDef& q, auto&& value) {
   return n > 0 ? sum / n : 0;
 }
 
-/// Mean height of the topmost layer: as many particles as one layer of the floor has.
+/// From the topmost layers, each of as many particles as one layer of the floor has.
 /// Of fluid 10.3 spacings high the last 0.3 are no layer of their own: they lie among the one
 /// below, and a surface read from that alone would be as much too low. So several are looked at.
 double surfaceHeight(const Snapshot& s, const QuantityDef& q) {
@@ -89,7 +89,8 @@ double surfaceHeight(const Snapshot& s, const QuantityDef& q) {
       d.shape == Shape::cylinder ? kPi * d.radius_m * d.radius_m : d.size_m.x() * d.size_m.y();
   if (s.def->motion.kind == MotionKind::piston && d.shape == Shape::box)
     area *= 1 - s.def->motion.speed.travel(s.time_s) / d.size_m[s.def->motion.axis];
-  const auto layer = static_cast<std::size_t>(std::lround(area / (s.spacing_m * s.spacing_m)));
+  const auto layer =
+      static_cast<std::size_t>(std::max(1L, std::lround(area / (s.spacing_m * s.spacing_m))));
   const QuantityDef up{.kind = q.kind, .along = "z", .within_m = q.within_m};
   std::vector<double> heights = along(s, up, 1);
   const std::size_t layers = std::clamp<std::size_t>(heights.size() / layer, 1, kSurfaceLayers);
