@@ -175,7 +175,9 @@ SC_INLINE F8 twice(const Tensor8& t, F8 x, F8 y, F8 z) {  // n.T.n
          all(2) * (x * y * t.xy + x * z * t.xz + y * z * t.yz);
 }
 
-/// Row r of the gradient half way between i and its neighbours, n along the pair.
+/// Row r of the gradient half way between i and its neighbours, n along the pair. Across it the
+/// mean of both, which are smooth over the kernel; along it what is half way in the cubic through
+/// both ends' velocities and slopes, 3/2 of the difference less half of the mean slope.
 SC_INLINE F8x3 midRow(const PairViscositySweep& s, int r, int i, const int* at, const F8x3& n,
                       F8 perMetre) {
   const float* own = s.field + 12 * static_cast<long>(i) + 4 * r;
@@ -183,7 +185,7 @@ SC_INLINE F8x3 midRow(const PairViscositySweep& s, int r, int i, const int* at, 
   const F8 half = all(0.5f);
   const F8 x = half * (all(own[0]) + o.x), y = half * (all(own[1]) + o.y),
            z = half * (all(own[2]) + o.z);
-  const F8 lacks = (all(own[3]) - o.w) * perMetre - (x * n.x + y * n.y + z * n.z);
+  const F8 lacks = all(1.5f) * ((all(own[3]) - o.w) * perMetre - (x * n.x + y * n.y + z * n.z));
   return {x + lacks * n.x, y + lacks * n.y, z + lacks * n.z};
 }
 

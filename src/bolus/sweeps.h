@@ -109,8 +109,8 @@ struct Tensors {
 /// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu at least leastPair, even =
 /// n.(B_i + B_j).n / 2 along the pair, at least leastEven; diagonal_i = sum c_ij. Without
 /// `constant` mu is that of the shear rate half way, where the gradient is (F_i + F_j) / 2, but
-/// along the pair (v_i - v_j) / r. With slopes G also transposed_i = -sum c_ij (G_i + G_j)^T x_ij /
-/// 2, summed as GradientSweep.
+/// along the pair that of the cubic through both ends' v and F. With slopes G also transposed_i =
+/// -sum c_ij (G_i + G_j)^T x_ij / 2, summed as GradientSweep.
 struct PairViscositySweep {
   PairLists pairs;
   const float *r, *evenness;  ///< [pair]; Tensors

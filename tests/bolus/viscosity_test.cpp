@@ -60,7 +60,56 @@ TEST(Viscosity, TableFollowsTheLaws) {
   }
 }
 
-// v = A x + Q x x: the gradient half way between two is what F and (v_i - v_j) / r give there.
+// A particle and eight around it, which see only the first.
+struct Star {
+  static constexpr int n = 9, lanes = simd::kLanes;
+  std::vector<float> field = std::vector<float>(12 * (n + 1)),
+                     evenness = std::vector<float>(8 * (n + 1)),
+                     r = std::vector<float>(n * lanes, 1e18f), g[3], c = r,
+                     diagonal = std::vector<float>(n);
+  std::vector<int> start = std::vector<int>(n), stop = start,
+                   index = std::vector<int>(n * lanes, n);
+  ViscosityTable table;
+  PairViscositySweep sweep;
+
+  template <typename Gradient, typename Velocity>
+  Star(const std::vector<Vec3>& x, const Gradient& gradientAt, const Velocity& velocityAt) {
+    for (auto& of : g) of.assign(n * lanes, 0.f);
+    const auto join = [&](int i, int j, int e) {
+      const Vec3 d = x[i] - x[j];
+      index[e] = j;
+      r[e] = static_cast<float>(d.norm());
+      for (int a = 0; a < 3; ++a) g[a][e] = static_cast<float>(-40 * d[a] / d.norm());
+    };
+    for (int i = 0; i < n; ++i) {
+      Eigen::Map<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(&field[12 * i])
+          << gradientAt(x[i]).template cast<float>(),
+          velocityAt(x[i]).template cast<float>();
+      for (int k : {0, 1, 2}) evenness[8 * i + k] = 1;
+      start[i] = i * lanes, stop[i] = start[i] + lanes;
+      if (i > 0) join(0, i, i - 1), join(i, 0, start[i]);
+    }
+    table.make(kThinning);
+    sweep = {{start.data(), stop.data(), index.data(), g[0].data(), g[1].data(), g[2].data()},
+             r.data(),
+             evenness.data(),
+             0,
+             &table,
+             field.data(),
+             0.5f,
+             0,
+             0,
+             0.2f,
+             c.data(),
+             diagonal.data(),
+             nullptr,
+             nullptr};
+    sweep.run(0, n);
+  }
+  double viscosity_Pas(int e) const { return c[e] * r[e] / 40; }
+};
+
+// v = A x + Q x x: the gradient half way between two is the mean of both.
 TEST(Viscosity, PairsRubWithTheViscosityHalfWay) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -81,63 +130,47 @@ TEST(Viscosity, PairsRubWithTheViscosityHalfWay) {
     for (int a = 0; a < 3; ++a) v[a] += x.dot(Q[a] * x) / 2;
     return v;
   };
-  // 0 and 1 to 8 around it; the lists of those have only 0, and padding
-  constexpr int n = 9, lanes = simd::kLanes;
-  std::vector<Vec3> x(n, Vec3::Zero());
-  for (int i = 1; i < n; ++i) x[i] = 2e-3 * vector();
-  std::vector<float> field(12 * (n + 1)), evenness(8 * (n + 1)), r(n * lanes, 1e18f);
-  std::vector<float> g[3], c(n * lanes), diagonal(n);
-  for (auto& of : g) of.assign(n * lanes, 0.f);
-  std::vector<int> start(n), stop(n), index(n * lanes, n);
-  const auto join = [&](int i, int j, int e) {
-    const Vec3 d = x[i] - x[j];
-    index[e] = j;
-    r[e] = static_cast<float>(d.norm());
-    for (int a = 0; a < 3; ++a) g[a][e] = static_cast<float>(-40 * d[a] / d.norm());
-  };
-  for (int i = 0; i < n; ++i) {
-    Eigen::Map<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(&field[12 * i])
-        << gradientAt(x[i]).cast<float>(),
-        velocityAt(x[i]).cast<float>();
-    for (int k : {0, 1, 2}) evenness[8 * i + k] = 1;
-    start[i] = i * lanes, stop[i] = start[i] + lanes;
-    if (i > 0) join(0, i, i - 1), join(i, 0, start[i]);
-  }
-  ViscosityTable table;
-  table.make(kThinning);
-  PairViscositySweep sweep{
-      {start.data(), stop.data(), index.data(), g[0].data(), g[1].data(), g[2].data()},
-      r.data(),
-      evenness.data(),
-      0,
-      &table,
-      field.data(),
-      0.5f,
-      0,
-      0,
-      0.2f,
-      c.data(),
-      diagonal.data(),
-      nullptr,
-      nullptr};
-  sweep.run(0, n);
+  std::vector<Vec3> x(Star::n, Vec3::Zero());
+  for (int i = 1; i < Star::n; ++i) x[i] = 2e-3 * vector();
+  Star star(x, gradientAt, velocityAt);
   double least = INFINITY, most = 0;
-  for (int i = 1; i < n; ++i) {
+  for (int i = 1; i < Star::n; ++i) {
     const double mu = apparentViscosity_Pas(kThinning, shearRate_s(gradientAt((x[0] + x[i]) / 2)));
-    EXPECT_NEAR(c[i - 1] * r[i - 1] / 40, mu, 2e-3 * mu) << i;
-    EXPECT_EQ(c[i - 1], c[start[i]]) << "not what the other has";
+    EXPECT_NEAR(star.viscosity_Pas(i - 1), mu, 2e-3 * mu) << i;
+    EXPECT_EQ(star.c[i - 1], star.c[star.start[i]]) << "not what the other has";
     least = std::min(least, mu), most = std::max(most, mu);
   }
   EXPECT_GT(most, 1.1 * least);  // they do differ
   // what is no number is found where velocities are looked at, and does no harm here
   for (const float bad : {NAN, INFINITY, 1e30f}) {
-    field[12 + 3] = bad;
-    sweep.run(0, n);
-    EXPECT_TRUE(std::isfinite(c[0])) << bad;
+    star.field[12 + 3] = bad;
+    star.sweep.run(0, Star::n);
+    EXPECT_TRUE(std::isfinite(star.c[0])) << bad;
   }
-  sweep.constant = 0.7f;
-  sweep.run(0, n);
-  EXPECT_NEAR(c[0] * r[0] / 40, 0.7, 1e-6);
+  star.sweep.constant = 0.7f;
+  star.sweep.run(0, Star::n);
+  EXPECT_NEAR(star.viscosity_Pas(0), 0.7, 1e-6);
+}
+
+// Shear that bends more on one side, as beside a plug: of the mean of both ends' slopes a quarter
+// more would come than is there half way.
+TEST(Viscosity, PairsAlongTheGradientSeeItsCurvature) {
+  const double bend_m2s = 3e7;  // v_x = bend z^3
+  std::vector<Vec3> x(Star::n, Vec3(0, 0, 1e-3));
+  for (int i = 1; i < Star::n; ++i) x[i].z() += (i - 3.5) * 4e-4;
+  const Star star(
+      x,
+      [&](const Vec3& at) {
+        Mat3 g = Mat3::Zero();
+        g(0, 2) = 3 * bend_m2s * at.z() * at.z();
+        return g;
+      },
+      [&](const Vec3& at) { return Vec3(bend_m2s * std::pow(at.z(), 3), 0, 0); });
+  for (int i = 1; i < Star::n; ++i) {
+    const double middle = (x[0].z() + x[i].z()) / 2;
+    const double mu = apparentViscosity_Pas(kThinning, 3 * bend_m2s * middle * middle);
+    EXPECT_NEAR(star.viscosity_Pas(i - 1), mu, 2e-3 * mu) << i;
+  }
 }
 }  // namespace
 }  // namespace swallowclip::bolus
