@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'0000000a;  // "SWBC", layout 10
+constexpr std::uint64_t kMark = 0x53574243'0000000b;  // "SWBC", layout 11
 
 class Writer {
  public:

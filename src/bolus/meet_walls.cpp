@@ -8,8 +8,11 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr int kWallChunk = 16;      // particles per work item of wall work
-constexpr double kHeldMove = 0.03;  // spacings, assumed (0.01 to 0.05): lambda within 5e-4
+constexpr int kWallChunk = 16;  // particles per work item of wall work
+// Farther than this from where walls were last integrated, or contacts looked for, it is done
+// again: spacings, assumed (0.05 to 0.15; with 0.2 columns at rest are 0.25 % worse). Walls that
+// move may turn and stretch as well, so theirs is less (0.01 to 0.1).
+constexpr double kHeldMove = 0.1, kHeldMoveOfWalls = 0.03;
 // More than contacts reach, for rounding and walls that speed up; spacings, assumed (0.05 to 0.2).
 constexpr double kClearMargin = 0.1;
 constexpr double kFilmGap = 0.3;  // spacings, DESIGN 5 (0.6 invents residue)
@@ -230,16 +233,15 @@ bool Solver::Impl::followContacts(int i) {
 }
 
 // While walls and particles hardly move, in wcsph's short steps or where walls stand still, most of
-// the time would go into the same integrals again. The last ones serve on, lambda along its own
-// gradient and rate; no longer than walls as fast as they were then or are now take to move.
+// the time would go into the same integrals again. The last ones serve on, with their slopes; no
+// longer than walls as fast as they were then or are now take to move.
 bool Solver::Impl::followWalls(int i) {
   Held& h = held[i];
   const Vec3 moved = particles.positions[i] - h.place;
   const double since_s = time_s - h.time_s;
-  if (movedSinceHeld_m(i) < kHeldMove * def.spacing_m) {
-    walls[i] = h.sample;
-    walls[i].lambda =
-        std::max(0.0, h.sample.lambda + moved.dot(h.sample.gradLambda) - since_s * h.sample.flux_s);
+  const double most = std::max(fastestWall_ms, h.fastestWall_ms) > 0 ? kHeldMoveOfWalls : kHeldMove;
+  if (movedSinceHeld_m(i) < most * def.spacing_m) {
+    walls[i] = field.nearTo(h.sample, moved, since_s);
     return true;
   }
   h.place = particles.positions[i];

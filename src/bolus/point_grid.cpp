@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bolus/point_grid.h"
 
-#include <cmath>
-
 namespace swallowclip::bolus {
 
 void PointGrid::build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
@@ -32,7 +30,7 @@ void PointGrid::build(std::span<const Vec3> points, std::span<const std::uint8_t
   cell_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!taken(i)) continue;
-    const Eigen::Vector3i c = cellOf(points[i]).cwiseMax(0).cwiseMin(size_.array().matrix() - kOne);
+    const Eigen::Vector3i c = cellOf(points[i]);
     cell_[i] = (c.z() * size_.y() + c.y()) * size_.x() + c.x();
     ++start_[cell_[i] + 1];
   }

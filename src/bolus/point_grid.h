@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Points by the cubic cells that they lie in.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,30 +21,47 @@ class PointGrid {
   /// Only points with take[i] != 0 enter; an empty `take` takes all.
   void build(std::span<const Vec3> points, std::span<const std::uint8_t> take, double cell_m);
 
-  /// Calls visit(first, last) for each row of the cells within reach_m of p along every axis:
-  /// places in order().
+  /// Calls visit(first, last) for each row of the cells within reach_m of p: places in order().
   template <class Visit>
   void rowsAround(const Vec3& p, double reach_m, Visit&& visit) const {
     if (order_.empty()) return;
-    const Vec3 reach = Vec3::Constant(reach_m);
-    const Eigen::Vector3i low = cellOf(p - reach).cwiseMax(0),
-                          high = cellOf(p + reach).cwiseMin(size_.array().matrix() - kOne);
-    if (low.x() > high.x()) return;
-    for (int z = low.z(); z <= high.z(); ++z)
-      for (int y = low.y(); y <= high.y(); ++y) {
+    const Vec3 at = (p - low_) / cell_m_;
+    const double reach = reach_m / cell_m_ * (1 + 1e-9), reach2 = reach * reach;
+    const int lowZ = first(at.z() - reach), highZ = last(at.z() + reach, size_.z());
+    for (int z = lowZ; z <= highZ; ++z) {
+      const double left2 = reach2 - square(outside(at.z(), z));
+      if (left2 < 0) continue;
+      const double wide = std::sqrt(left2);
+      const int lowY = first(at.y() - wide), highY = last(at.y() + wide, size_.y());
+      for (int y = lowY; y <= highY; ++y) {
+        const double long2 = left2 - square(outside(at.y(), y));
+        if (long2 < 0) continue;
+        const double length = std::sqrt(long2);
+        const int lowX = first(at.x() - length), highX = last(at.x() + length, size_.x());
+        if (lowX > highX) continue;
         const int row = (z * size_.y() + y) * size_.x();
-        const int first = start_[row + low.x()], last = start_[row + high.x() + 1];
-        if (first < last) visit(first, last);
+        const int from = start_[row + lowX], to = start_[row + highX + 1];
+        if (from < to) visit(from, to);
       }
+    }
   }
 
   const std::vector<int>& order() const { return order_; }
 
  private:
-  Eigen::Vector3i cellOf(const Vec3& p) const {  // one outside at most, so that rows are few
+  Eigen::Vector3i cellOf(const Vec3& p) const {
     const Eigen::Array3d at = ((p - low_) / cell_m_).array().floor();
-    return at.max(-1).min(size_.cast<double>().array()).cast<int>();
+    return at.max(0).min(size_.cast<double>().array() - 1).cast<int>();
   }
+  // In cells: the first and the last that reach this far, none if the last is before the first.
+  static int first(double at) { return at > 0 ? static_cast<int>(std::min(at, 1e9)) : 0; }
+  static int last(double at, int size) {
+    return at < 0 ? -1 : static_cast<int>(std::min(at, size - 1.0));
+  }
+  static double outside(double at, int cell) {  // how far from a cell
+    return std::max({cell - at, at - (cell + 1), 0.0});
+  }
+  static double square(double a) { return a * a; }
 
   double cell_m_ = 1;
   Vec3 low_ = Vec3::Zero();

@@ -229,9 +229,9 @@ WallSample WallField::sample(const Vec3& p) const {
   WallSums sums;
   thread_local NearPieces near;
   near.clear();
-  grid_.rowsAround(p, table_->support_m() + largestRadius_m_, [&](int first, int last) {
-    quadrature.look(at.x(), at.y(), at.z(), first, last, near, sums);
-  });
+  grid_.rowsAround(p, table_->support_m() + largestRadius_m_,
+                   [&](int first, int last) { near.add(first, last); });
+  quadrature.look(at.x(), at.y(), at.z(), near, sums);
   out.clear_m = table_->support_m();
   if (sums.nearest < 0) return out;
   quadrature.integrate(at.x(), at.y(), at.z(), near, sums);
@@ -242,9 +242,37 @@ WallSample WallField::sample(const Vec3& p) const {
   out.friction = sums.friction;
   out.frictionVelocity = Vec3(sums.frictionVelocity.data());
   out.area = sums.area;
+  out.bend = sums.bend;
   out.normalSpeed_ms = sums.normalSpeed;
   out.clear_m = std::min<double>(out.clear_m, sums.clear_m);
   out.nearestTriangle = pieces_[sums.nearest].triangle;
+  return out;
+}
+
+WallSample WallField::nearTo(const WallSample& s, const Vec3& moved_m, double since_s) const {
+  WallSample out = s;
+  const double steep = s.gradLambda.norm();
+  if (steep == 0) return out;
+  Vec3 away = moved_m;  // from the wall as it is now
+  if (s.friction > 0) away -= since_s / s.friction * s.frictionVelocity;
+  const auto& b = s.bend;
+  const Vec3 more(b[0] * away.x() + b[3] * away.y() + b[4] * away.z(),
+                  b[3] * away.x() + b[1] * away.y() + b[5] * away.z(),
+                  b[4] * away.x() + b[5] * away.y() + b[2] * away.z());
+  out.gradLambda += more;
+  out.lambda += moved_m.dot(s.gradLambda) - since_s * s.flux_s + away.dot(more) / 2;
+  out.lambda = std::max(0.0, out.lambda);
+  const double shape = s.lambdaSlope - s.lambda, wider = out.gradLambda.norm() / steep;
+  double nearer = 1;
+  if (s.friction > 0 && s.area > 0) {
+    const double was_m = s.area / s.friction, least_m = kLeastShearDistance * spacing_m_;
+    nearer = was_m / std::max(least_m, was_m - away.dot(s.gradLambda) / steep);
+    out.flux_s += more.dot(s.frictionVelocity) / s.friction;
+    out.area *= wider;
+    out.friction *= wider * nearer;
+    out.frictionVelocity *= wider * nearer;
+  }
+  out.lambdaSlope = out.lambda + shape * wider / nearer;
   return out;
 }
 

@@ -25,6 +25,7 @@ struct WallSample {
   double lambdaSlope = 0;                ///< lambda of the kernel -W' r / 3, as viscosity weighs
   double flux_s = 0;                     ///< 1/s, positive where walls recede
   Vec3 gradLambda = Vec3::Zero();        ///< 1/m, points out of the fluid
+  std::array<float, 6> bend{};           ///< its gradient, 1/m^2: xx, yy, zz, xy, xz, yz
   double friction = 0;                   ///< sum int W / distance dS, 1/m^2
   Vec3 frictionVelocity = Vec3::Zero();  ///< the same, times wall velocity
   double area = 0;                       ///< sum int W dS over facing walls, 1/m
@@ -92,6 +93,9 @@ class WallField {
               std::span<const std::uint8_t> skip);
 
   WallSample sample(const Vec3& p) const;
+  /// The same `moved_m` from there and `since_s` later, where both are little: lambda to second
+  /// order, its gradient to first, and the shear as if all of it came from one flat wall.
+  WallSample nearTo(const WallSample& sample, const Vec3& moved_m, double since_s) const;
 
   /// Contacts within radius (<= H), nearest first, at most kMaxContacts of clearly different
   /// direction. Only the first may have a negative distance, and then it is alone.

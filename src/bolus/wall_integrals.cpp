@@ -106,36 +106,39 @@ SC_INLINE Records recordsFrom(const PieceArrays& p, const int* at, const F8 (&o)
           second[7]};
 }
 
-SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, int begin, int end,
-                          float support, int* out, int* lists, WallSums& sums) {
+SC_CLONES int lookThrough(const PieceArrays& p, float px, float py, float pz, float support,
+                          NearPieces& pieces, WallSums& sums) {
   using P = PieceArrays;
   const F8 ox = all(px), oy = all(py), oz = all(pz), zero = all(0);
   F8 speed = zero, nearest2 = all(sums.nearest2);
   I8 nearest = allInt(sums.nearest);
   const float support2 = support * support, few2 = kFewPoints * kFewPoints * support2;
   int found = 0;
-  for (int k = begin; k < end; k += kLanes) {
-    const F8 cx = load(p.at(P::kCx) + k) - ox, cy = load(p.at(P::kCy) + k) - oy,
-             cz = load(p.at(P::kCz) + k) - oz, reach = load(p.at(P::kReach) + k);
-    const F8 away2 = cx * cx + cy * cy + cz * cz;
-    const I8 near = (away2 < reach * reach) & (reach > zero) & (kCount < allInt(end - k));
-    if (!any(near)) continue;
-    const I8 nearer = near & (away2 < nearest2);
-    nearest2 = select(nearer, away2, nearest2);
-    nearest = nearer ? kCount + allInt(k) : nearest;
-    speed = largest(speed, select(near, load(p.at(P::kSpeed) + k), zero));
-    // of its plane the kernel reaches a disc, if anything
-    const F8 offset =
-        cx * load(p.at(P::kNx) + k) + cy * load(p.at(P::kNy) + k) + cz * load(p.at(P::kNz) + k);
-    const F8 disc2 = all(support2) - offset * offset;
-    const F8 along = root(largest(disc2, zero)) + (reach - all(support));
-    const I8 reached = near & (disc2 > zero) & (away2 - offset * offset < along * along);
-    const I8 rule = loadInt(p.rule.data() + k);
-    const I8 few = (away2 > all(few2)) & (rule > allInt(1));
-    const I8 close = away2 < load(p.at(P::kClose2) + k);
-    putValues(reached, rule + few - allInt(NearPieces::kRules) * close, lists + found);  // true: -1
-    found += putLanes(reached, k, out + found);
-  }
+  int *const out = pieces.all.data(), *const lists = pieces.lists.data();
+  for (const auto& [begin, end] : pieces.rows)
+    for (int k = begin; k < end; k += kLanes) {
+      const F8 cx = load(p.at(P::kCx) + k) - ox, cy = load(p.at(P::kCy) + k) - oy,
+               cz = load(p.at(P::kCz) + k) - oz, reach = load(p.at(P::kReach) + k);
+      const F8 away2 = cx * cx + cy * cy + cz * cz;
+      const I8 near = (away2 < reach * reach) & (reach > zero) & (kCount < allInt(end - k));
+      if (!any(near)) continue;
+      const I8 nearer = near & (away2 < nearest2);
+      nearest2 = select(nearer, away2, nearest2);
+      nearest = nearer ? kCount + allInt(k) : nearest;
+      speed = largest(speed, select(near, load(p.at(P::kSpeed) + k), zero));
+      // of its plane the kernel reaches a disc, if anything
+      const F8 offset =
+          cx * load(p.at(P::kNx) + k) + cy * load(p.at(P::kNy) + k) + cz * load(p.at(P::kNz) + k);
+      const F8 disc2 = all(support2) - offset * offset;
+      const F8 along = root(largest(disc2, zero)) + (reach - all(support));
+      const I8 reached = near & (disc2 > zero) & (away2 - offset * offset < along * along);
+      const I8 rule = loadInt(p.rule.data() + k);
+      const I8 few = (away2 > all(few2)) & (rule > allInt(1));
+      const I8 close = away2 < load(p.at(P::kClose2) + k);
+      putValues(reached, rule + few - allInt(NearPieces::kRules) * close,
+                lists + found);  // true: -1
+      found += putLanes(reached, k, out + found);
+    }
   for (int lane = 0; lane < kLanes; ++lane) {
     sums.normalSpeed = std::max(sums.normalSpeed, static_cast<float>(speed[lane]));
     if (nearest2[lane] >= sums.nearest2) continue;
@@ -152,8 +155,10 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
   const F8 zero = all(0), o[3] = {all(px), all(py), all(pz)};
   F8 lambda = zero, shape = zero, flux = zero, friction = zero, area = zero;
   V grad{zero, zero, zero}, drag{zero, zero, zero};
+  F8 xx = zero, yy = zero, zz = zero, xy = zero, xz = zero, yz = zero;
   F8 clear = all(sums.clear_m);
   const F8 halfSupport = all(q.support_m / 2);
+  const float w0PerH2 = q.w0 * q.perHalfSupport * q.perHalfSupport;
   for (int list = 0; list < NearPieces::kLists; ++list)
     for (int k = 0; k < pieces.count[list]; k += kLanes) {
       const bool close = list >= NearPieces::kRules;
@@ -177,6 +182,7 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
       }
       const F8 singular = all(close ? 0 : 1 / (4 * kPif));
       F8 inside = zero, shear = zero, solid = zero;  // of W, W / distance, r-hat . n over the piece
+      V steep{zero, zero, zero};                     // of W' r-hat
       const F8 perOffset = all(1) / largest(offset, all(q.leastShear_m));
       for (int g = 0; g < rule.count; ++g) {
         const Point& point = rule.points[g];
@@ -185,10 +191,11 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
                   u * a.z + t * b.z + w * c.z};
         const F8 r = root(dot(x, x));
         const F8 inverse = all(1) / largest(r, all(1e-10f));
-        F8 value, f;  // W, F / r
+        F8 value, f, slope;  // W, F / r, W' / r
         if (q.cubicSpline) {
           const F8 perH = r * all(q.perHalfSupport);
           value = all(q.w0) * cubic::w(perH);
+          slope = all(w0PerH2) * cubic::slopePerQ(perH);
           f = all(q.w0) * cubic::fPerR(perH, inverse * halfSupport);
         } else {
           const F8 nodes = r * all(q.nodesPerMetre);
@@ -205,11 +212,16 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
             f1[lane] = e.fStep;
           }
           value = select(outside, zero, w0 + part * w1);
+          slope = select(outside, zero, all(q.nodesPerMetre) * w1 * inverse);
           f = select(outside, all(1 / (4 * kPif)) / (r * r * r), f0 + part * f1);
         }
         const F8 weight = all(point.weight), share = weight * value;
         solid += weight * (singular * inverse * inverse * inverse - f);
         inside += share;
+        const F8 fall = weight * slope;
+        steep.x += fall * x.x;
+        steep.y += fall * x.y;
+        steep.z += fall * x.z;
         // by the distance of the plane or a quarter of r, whichever is more: pieces seen edge-on
         // have no shear distance of their own
         shear += share * smallest(perOffset, all(4) * inverse);
@@ -220,6 +232,13 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
       grad.x += inside * n.x;
       grad.y += inside * n.y;
       grad.z += inside * n.z;
+      const V turn{pieceArea * n.x, pieceArea * n.y, pieceArea * n.z};
+      xx -= steep.x * turn.x;
+      yy -= steep.y * turn.y;
+      zz -= steep.z * turn.z;
+      xy -= steep.x * turn.y;
+      xz -= steep.x * turn.z;
+      yz -= steep.y * turn.z;
       flux += inside * dot(v, n);
       // a wall seen from behind does not rub
       const I8 front = offset > zero;
@@ -239,6 +258,7 @@ SC_CLONES void integrateAll(const WallQuadrature& q, float px, float py, float p
   sums.area = sum(area);
   sums.gradLambda = {sum(grad.x), sum(grad.y), sum(grad.z)};
   sums.frictionVelocity = {sum(drag.x), sum(drag.y), sum(drag.z)};
+  sums.bend = {sum(xx), sum(yy), sum(zz), sum(xy), sum(xz), sum(yz)};
 }
 
 /// The point of a + t e, 0 <= t <= 1, that is nearest to the origin.
@@ -326,15 +346,14 @@ SC_CLONES int candidates(const PieceArrays& p, float px, float py, float pz, flo
 }
 }  // namespace
 
-void WallQuadrature::look(float x, float y, float z, int begin, int end, NearPieces& near,
-                          WallSums& sums) const {
-  for (auto* list : {&near.all, &near.lists})
-    list->resize(std::max<std::size_t>(list->size(), end - begin + kLanes));
-  const int found = lookThrough(*pieces, x, y, z, begin, end, support_m, near.all.data(),
-                                near.lists.data(), sums);
+void WallQuadrature::look(float x, float y, float z, NearPieces& near, WallSums& sums) const {
+  const std::size_t room = near.pieces + kLanes;
+  if (near.all.size() < room)
+    for (auto* list : {&near.all, &near.lists}) list->resize(2 * room);
+  const int found = lookThrough(*pieces, x, y, z, support_m, near, sums);
+  const std::size_t most = found + kLanes;
   for (auto& list : near.of)
-    list.resize(std::max<std::size_t>(list.size(), near.total + found + kLanes));
-  near.total += found;
+    if (list.size() < most) list.resize(2 * most);
   for (int k = 0; k < found; ++k) {
     const int list = near.lists[k];
     near.of[list][near.count[list]++] = near.all[k];

@@ -2,6 +2,7 @@
 // The integrals of WallField over pieces of wall, eight pieces at once.
 #pragma once
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "bolus/kernels.h"
@@ -39,6 +40,7 @@ struct PieceArrays {
 struct WallSums {
   double lambda = 0, shape = 0, flux = 0, friction = 0, area = 0;
   std::array<double, 3> gradLambda{}, frictionVelocity{};
+  std::array<float, 6> bend{};              ///< of the gradient, 1/m^2: xx, yy, zz, xy, xz, yz
   float normalSpeed = 0, nearest2 = 1e30f;  // m/s, m^2
   float clear_m = 1e30f;                    ///< no wall is nearer, of those looked at
   int nearest = -1;                         ///< piece with the nearest centroid
@@ -49,18 +51,20 @@ struct NearPieces {
   static constexpr int kRules = 3, kLists = 2 * kRules;
   std::array<std::vector<int>, kLists> of;
   std::array<int, kLists> count{};
-  int total = 0;
-  std::vector<int> all, lists;  // of one row
-  void clear() { count = {}, total = 0; }
+  std::vector<std::pair<int, int>> rows;  ///< of pieces, first and behind the last: to be looked at
+  int pieces = 0;                         ///< in all rows
+  std::vector<int> all, lists;
+  void clear() { count = {}, pieces = 0, rows.clear(); }
+  void add(int first, int last) { rows.emplace_back(first, last), pieces += last - first; }
 };
 
-/// What pieces give to a particle at (x, y, z): first look through rows of them, then integrate.
+/// What pieces give to a particle at (x, y, z): first look through the rows, then integrate.
 struct WallQuadrature {
   const PieceArrays* pieces;
   const KernelTable::Wall* table;
   float nodesPerMetre, leastShear_m, perHalfSupport, w0, support_m, spacing_m;
   bool cubicSpline;
-  void look(float x, float y, float z, int begin, int end, NearPieces& near, WallSums& sums) const;
+  void look(float x, float y, float z, NearPieces& near, WallSums& sums) const;
   void integrate(float x, float y, float z, NearPieces& near, WallSums& sums) const;
 };
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "shapes.h"
 
 namespace swallowclip::bolus {
@@ -103,6 +105,42 @@ TEST(WallField, FewPointsFarAwayAreEnough) {
     const WallSample x = a.sample(p), y = b.sample(p);
     EXPECT_NEAR(x.lambda, y.lambda, 1e-3) << p.transpose();
     EXPECT_LT((x.gradLambda - y.gradLambda).norm() * spacing, 3e-3) << p.transpose();
+  }
+}
+// A tenth of a spacing away, before flat walls, edges and corners, which move on: what follows from
+// the sample against integrals of its own there.
+TEST(WallField, SamplesServeNearTheirPlace) {
+  const double spacing = 1e-3, since_s = 0.01;
+  const Vec3 high(0.012, 0.012, 0.012), wall_ms(2e-3, -1e-3, 3e-3);
+  const testing::Mesh mesh = testing::box({0, 0, 0}, high, 0.7e-3);
+  const std::vector<Vec3> v(mesh.positions.size(), wall_ms);
+  std::vector<Vec3> later = mesh.positions;
+  for (Vec3& x : later) x += since_s * wall_ms;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (const KernelKind kind : {KernelKind::cubicSpline, KernelKind::wendlandC2}) {
+    const KernelTable table{Kernel(kind, 2 * spacing)};
+    WallField a(table, spacing), b(table, spacing);
+    a.build(mesh.triangles, mesh.positions, v, Vec3::Zero(), high);
+    b.build(mesh.triangles, later, v, Vec3::Zero(), high);
+    for (int k = 0; k < 400; ++k) {
+      const bool flat = k % 2 == 0;
+      Vec3 p, moved(any(random), any(random), any(random));
+      for (int axis = 0; axis < 3; ++axis)
+        p[axis] = 1e-3 * (flat && axis < 2 ? 6 : 1.2 + 0.8 * any(random));
+      moved *= 0.1 * spacing / moved.norm();
+      const WallSample s = a.sample(p), got = a.nearTo(s, moved, since_s),
+                       want = b.sample(p + moved);
+      EXPECT_NEAR(got.lambda, want.lambda, 5e-4) << p.transpose();
+      EXPECT_LT((got.gradLambda - want.gradLambda).norm() * spacing, 1e-2) << p.transpose();
+      EXPECT_NEAR(got.flux_s, want.flux_s, 1e-2 * wall_ms.norm() / spacing) << p.transpose();
+      // which wall it is of is not known
+      EXPECT_NEAR(got.lambdaSlope, want.lambdaSlope, flat ? 5e-3 : 3e-2) << p.transpose();
+      EXPECT_NEAR(got.area * spacing, want.area * spacing, flat ? 1e-2 : 6e-2) << p.transpose();
+      EXPECT_NEAR(got.friction, want.friction,
+                  (flat ? 0.02 : 0.08) * (want.friction + 1 / (spacing * spacing)))
+          << p.transpose();
+    }
   }
 }
 TEST(WallField, NoWallIsNearerThanItSays) {
