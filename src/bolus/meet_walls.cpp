@@ -240,7 +240,8 @@ bool Solver::Impl::followWalls(int i) {
   const Vec3 moved = particles.positions[i] - h.place;
   const double since_s = time_s - h.time_s;
   const double most = std::max(fastestWall_ms, h.fastestWall_ms) > 0 ? kHeldMoveOfWalls : kHeldMove;
-  if (movedSinceHeld_m(i) < most * def.spacing_m) {
+  const double moved_m = movedSinceHeld_m(i);
+  if (moved_m < most * def.spacing_m || h.sample.clear_m - moved_m > kernel.support_m()) {
     walls[i] = field.nearTo(h.sample, moved, since_s);
     return true;
   }

@@ -11,6 +11,9 @@ namespace {
 constexpr double kOnePoint = 0.35, kThreePoints = 1.5, kLongestEdge = 2;
 constexpr int kMaxCuts = 6;              // a triangle becomes at most 4^6 pieces
 constexpr double kEmptyArea_m2 = 1e-16;  // slivers without a usable normal
+// Pieces are known this much farther than the kernel reaches, in spacings: nobody has to ask again
+// for some steps who is clear of them by that much. Assumed (0.5 to 2).
+constexpr double kClearBeyond = 1.5;
 // Nearer than this the wall shear no longer grows: 0.3 spacings, assumed (0.2 to 0.5), the order
 // of the distance at which particles rest.
 constexpr double kLeastShearDistance = 0.3;
@@ -159,7 +162,7 @@ void WallField::rebuild(std::span<const Triangle> triangles, std::span<const Vec
   pieces_.clear();
   centroids_.clear();
   largestRadius_m_ = 0;
-  const double reach = table_->support_m() + 0.5 * spacing_m_;
+  const double reach = table_->support_m() + kClearBeyond * spacing_m_;
   const Vec3 boxLow = built_.low.array() - reach, boxHigh = built_.high.array() + reach;
   for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
     if (!skip.empty() && skip[k]) continue;
@@ -233,7 +236,10 @@ WallSample WallField::sample(const Vec3& p) const {
                    [&](int first, int last) { near.add(first, last); });
   quadrature.look(at.x(), at.y(), at.z(), near, sums);
   out.clear_m = table_->support_m();
-  if (sums.nearest < 0) return out;
+  if (sums.nearest < 0) {
+    out.clear_m = std::max(out.clear_m, clearOf_m(p));
+    return out;
+  }
   quadrature.integrate(at.x(), at.y(), at.z(), near, sums);
   out.lambda = sums.lambda;
   out.lambdaSlope = sums.lambda + sums.shape / 3;
@@ -247,6 +253,21 @@ WallSample WallField::sample(const Vec3& p) const {
   out.clear_m = std::min<double>(out.clear_m, sums.clear_m);
   out.nearestTriangle = pieces_[sums.nearest].triangle;
   return out;
+}
+
+double WallField::clearOf_m(const Vec3& p) const {
+  const double most_m = table_->support_m() + kClearBeyond * spacing_m_;
+  const Vec3f at = (p - low_).cast<float>();
+  const float *x = arrays_.at(PieceArrays::kCx), *y = arrays_.at(PieceArrays::kCy),
+              *z = arrays_.at(PieceArrays::kCz);
+  float least2 = static_cast<float>((most_m + largestRadius_m_) * (most_m + largestRadius_m_));
+  grid_.rowsAround(p, most_m + largestRadius_m_, [&](int first, int last) {
+    for (int k = first; k < last; ++k) {
+      const float dx = x[k] - at.x(), dy = y[k] - at.y(), dz = z[k] - at.z();
+      least2 = std::min(least2, dx * dx + dy * dy + dz * dz);
+    }
+  });
+  return std::sqrt(static_cast<double>(least2)) - largestRadius_m_ - 1e-4 * spacing_m_;
 }
 
 WallSample WallField::nearTo(const WallSample& s, const Vec3& moved_m, double since_s) const {

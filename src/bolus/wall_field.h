@@ -31,7 +31,7 @@ struct WallSample {
   double area = 0;                       ///< sum int W dS over facing walls, 1/m
   double gap_m = INFINITY;    ///< width of a slit that the particle is alone in; set by the solver
   double normalSpeed_ms = 0;  ///< fastest normal motion of a wall within reach
-  double clear_m = 0;         ///< no wall is nearer, as far as a kernel support
+  double clear_m = 0;         ///< no wall is nearer, as far as is known
   int nearestTriangle = -1;   ///< by centroid; -1 when no wall is within reach
 };
 
@@ -103,6 +103,7 @@ class WallField {
   void contacts(const Vec3& p, double radius_m, std::vector<Contact>& out) const;
 
  private:
+  double clearOf_m(const Vec3& p) const;
   struct Piece {
     Vec3 a, b, c, va, vb, vc, normal, centroid;
     double area, radius, normalSpeed;
