@@ -223,52 +223,48 @@ SC_INLINE F8 pairViscosityAt(const PairViscositySweep& s, int i, const int* at, 
 struct PairWeights {
   F8 c, way;  ///< way times g is -c x / 2
 };
-/// Of eight pairs from e on.
-SC_INLINE PairWeights pairWeights(const PairViscositySweep& s, const Tensor8& own, int i, int e) {
-  const int* at = s.pairs.index + e;
+/// Of eight pairs from e on; `even` the neighbours' PairTensors::even, turned into columns.
+SC_INLINE PairWeights pairWeights(const PairViscositySweep& s, const Tensor8& own, int i, int e,
+                                  const F8 (&even)[8]) {
   const F8 r = load(s.r + e);
   const F8x3 g{load(s.pairs.gx + e), load(s.pairs.gy + e), load(s.pairs.gz + e)};
   const F8 square = g.x * g.x + g.y * g.y + g.z * g.z, size = root(square);
-  const F8x3 straight = gather3<8>(s.evenness, at), mixed = gather3<8>(s.evenness + 4, at);
-  const Tensor8 both2{own.xx + straight.x, own.yy + straight.y, own.zz + straight.z,
-                      own.xy + mixed.x,    own.xz + mixed.y,    own.yz + mixed.z};
-  const F8 even =
+  const Tensor8 both2{own.xx + even[0], own.yy + even[1], own.zz + even[2],
+                      own.xy + even[4], own.xz + even[5], own.yz + even[6]};
+  const F8 share =
       largest(all(2 * s.leastEven), twice(both2, g.x, g.y, g.z) / largest(square, all(1e-30f)));
-  const F8 mu = largest(all(s.leastPair), pairViscosityAt(s, i, at, g, size, r));
-  const F8 weight = all(s.scale) * mu * even * r / (r * r + all(s.eta2));
+  const F8 mu = largest(all(s.leastPair), pairViscosityAt(s, i, s.pairs.index + e, g, size, r));
+  const F8 weight = all(s.scale) * mu * share * r / (r * r + all(s.eta2));
   return {weight * size, all(0.5f) * weight * r};
-}
-SC_INLINE Tensor8 evennessOf(const PairViscositySweep& s, int i) {
-  const float* b = s.evenness + 8 * i;
-  return {all(b[0]), all(b[1]), all(b[2]), all(b[4]), all(b[5]), all(b[6])};
-}
-
-/// Row r of G_i^T + G_j^T, times g.
-SC_INLINE F8 rowTimes(const PairViscositySweep& s, int r, int i, const int* at, const F8x3& g) {
-  const float* own = s.slopes + 12 * static_cast<long>(i) + 4 * r;
-  const F8x3 o = gather3<12>(s.slopes + 4 * r, at);
-  return (all(own[0]) + o.x) * g.x + (all(own[1]) + o.y) * g.y + (all(own[2]) + o.z) * g.z;
 }
 
 SC_CLONES void pairViscosity(const PairViscositySweep& s, int begin, int end) {
+  constexpr int kRecord = sizeof(PairTensors) / sizeof(float);
   for (int i = begin; i < end; ++i) {
-    const Tensor8 own = evennessOf(s, i);
-    F8 total = all(0);
+    const PairTensors& t = s.tensors[i];
+    const Tensor8 own{all(t.even[0]), all(t.even[1]), all(t.even[2]),
+                      all(t.even[4]), all(t.even[5]), all(t.even[6])};
+    F8 total = all(0), even[8], slope[8];
     D8 x, y, z;
     for (int e = s.pairs.start[i]; e < s.pairs.stop[i]; e += kLanes) {
-      const PairWeights w = pairWeights(s, own, i, e);
+      const int* at = s.pairs.index + e;
+      gather8<kRecord>(s.tensors->even, at, even);
+      const PairWeights w = pairWeights(s, own, i, e, even);
       store(s.c + e, w.c);
       total += w.c;
-      if (!s.slopes) continue;
-      const int* at = s.pairs.index + e;
-      const F8x3 g{w.way * load(s.pairs.gx + e), w.way * load(s.pairs.gy + e),
-                   w.way * load(s.pairs.gz + e)};
-      x.add(rowTimes(s, 0, i, at, g));
-      y.add(rowTimes(s, 1, i, at, g));
-      z.add(rowTimes(s, 2, i, at, g));
+      if (!s.withSlopes) continue;
+      gather8<kRecord>(s.tensors->slope, at, slope);
+      const F8 gx = w.way * load(s.pairs.gx + e), gy = w.way * load(s.pairs.gy + e),
+               gz = w.way * load(s.pairs.gz + e);
+      x.add((all(t.slope[0]) + slope[0]) * gx + (all(t.slope[1]) + slope[1]) * gy +
+            (all(t.slope[2]) + slope[2]) * gz);
+      y.add((all(t.slope[3]) + slope[3]) * gx + (all(t.slope[4]) + slope[4]) * gy +
+            (all(t.slope[5]) + slope[5]) * gz);
+      z.add((all(t.slope[6]) + slope[6]) * gx + (all(t.slope[7]) + slope[7]) * gy +
+            (all(t.even[3]) + even[3]) * gz);
     }
     s.diagonal[i] = sum(total);
-    if (!s.slopes) continue;
+    if (!s.withSlopes) continue;
     s.transposed[3 * i] = sum(x);
     s.transposed[3 * i + 1] = sum(y);
     s.transposed[3 * i + 2] = sum(z);

@@ -106,21 +106,37 @@ struct Tensors {
   const float *operator[](int i) const { return &of[8 * static_cast<std::size_t>(i)]; }
 };
 
+/// What a pair's viscosity takes from either: B, by which weights are evened out, and G^T of
+/// PairViscositySweep, together in one line of the cache.
+struct alignas(64) PairTensors {
+  float even[8] = {};   ///< xx yy zz, the last of G^T, xy xz yz and nothing
+  float slope[8] = {};  ///< rows of G^T
+  float transposed(int row, int column) const {
+    const int k = 3 * row + column;
+    return k < 8 ? slope[k] : even[3];
+  }
+  void setTransposed(int row, int column, float value) {
+    const int k = 3 * row + column;
+    (k < 8 ? slope[k] : even[3]) = value;
+  }
+};
+
 /// c_ij = 2 scale mu_ij even_ij |g_ij| r / (r^2 + eta2), mu at least leastPair, even =
 /// n.(B_i + B_j).n / 2 along the pair, at least leastEven; diagonal_i = sum c_ij. Without
 /// `constant` mu is that of the shear rate half way, where the gradient is (F_i + F_j) / 2, but
-/// along the pair that of the cubic through both ends' v and F. With slopes G also transposed_i =
+/// along the pair that of the cubic through both ends' v and F. `withSlopes` G also transposed_i =
 /// -sum c_ij (G_i + G_j)^T x_ij / 2, summed as GradientSweep.
 struct PairViscositySweep {
   PairLists pairs;
-  const float *r, *evenness;  ///< [pair]; Tensors
-  float constant;             ///< mu of all; 0: by the next two
+  const float *r;              ///< [pair]
+  const PairTensors *tensors;  ///< [slot + 1]
+  float constant;              ///< mu of all; 0: by the next two
   const ViscosityTable *table;
   const float *field;  ///< [slot][3][4] rows of F, 1/s, and behind each that component of v, m/s
   float scale, leastPair, eta2, leastEven;
   float *c, *diagonal;
-  const float *slopes;  ///< G^T: [slot][3][4], rows; or null
-  double *transposed;   ///< [slot][3]
+  bool withSlopes;
+  double *transposed;  ///< [slot][3]
   void run(int begin, int end) const;
 };
 

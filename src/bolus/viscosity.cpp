@@ -77,10 +77,10 @@ void Viscosity::begin(Step& s) {
   inverse_.resize(n);
   own_.resize(n + 1);
   own_[n] = 1;
-  evenness_.shape(n, 1);
+  tensors_.resize(n + std::size_t{1});
+  tensors_[n] = {};
   if (waiting_.rate_s == 0 && knowsTransposed(s)) findSlopes(f, s.velocities);
-  const bool transposed = s.pairs_s > 0 && knowsTransposed(s) && !slopes_s_.empty();
-  transposed_.assign(transposed ? 12 * (n + std::size_t{1}) : 0, 0.f);
+  transposed_ = s.pairs_s > 0 && knowsTransposed(s) && !slopes_s_.empty();
   field_.assign(s.pairs_s > 0 && s.constant_Pas == 0 ? 12 * (n + std::size_t{1}) : 0, 0.f);
   for (auto* a : {&v_, &residual_, &direction_, &product_}) a->shape(n, 1);
 }
@@ -102,7 +102,7 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
     viscosity_[i] = viscosityAt(shear_.own_s, p);
     if (!field_.empty())
       std::copy_n(shear_.field[p].data(), 12, &field_[12 * static_cast<std::size_t>(i)]);
-    if (s.pairs_s > 0) evenOut(w, s.flow.neighbours.moment[i], evenness_[i]);
+    if (s.pairs_s > 0) evenOut(w, s.flow.neighbours.moment[i], tensors_[i].even);
     inertia_[i] = s.scheme.slip ? 1 : 1 - std::min(w.lambda, kMostLambda);
     right_[i] = s.velocities[p];
     if (w.friction > 0) {
@@ -113,10 +113,9 @@ void Viscosity::prepare(const Step& s, int begin, int end) {
       wallDrag_[p] = s.dt_s / s.fluid.density_kgm3 * std::max(shear, slit);
       right_[i] += wallDrag_[p] / w.friction * w.frictionVelocity;
     }
-    if (!transposed_.empty())
+    if (transposed_)
       for (int k = 0; k < 9; ++k)
-        transposed_[12 * static_cast<std::size_t>(i) + 4 * (k / 3) + k % 3] =
-            slopes_s_[p](k % 3, k / 3);
+        tensors_[i].setTransposed(k / 3, k % 3, slopes_s_[p](k % 3, k / 3));
     own_[i] = static_cast<float>(inertia_[i] * (1 + wallDrag_[p]));
     v_.set(i, right_[i] / (1 + wallDrag_[p]));
     right_[i] *= inertia_[i];
@@ -131,7 +130,7 @@ float Viscosity::weighPairs(const Step& s) {
   const PairViscositySweep sweep{
       f.lists(),
       f.neighbours.r.data(),
-      evenness_.of.data(),
+      tensors_.data(),
       static_cast<float>(s.constant_Pas),
       &table_,
       field_.data(),
@@ -141,12 +140,12 @@ float Viscosity::weighPairs(const Step& s) {
       static_cast<float>(kLeastPairShare),
       pair_.data(),
       inverse_.data(),
-      transposed_.empty() ? nullptr : transposed_.data(),
+      transposed_,
       force_.data()};
   std::vector<float> most((f.count() + kSweepChunk - 1) / kSweepChunk);
   f.sweep([&](int begin, int end, int chunk) {
     sweep.run(begin, end);
-    if (!transposed_.empty()) addTransposed(s, begin, end);
+    if (transposed_) addTransposed(s, begin, end);
     for (int i = begin; i < end; ++i) most[chunk] = std::max(most[chunk], inverse_[i]);
   });
   return most.empty() ? 0 : std::ranges::max(most);
@@ -157,10 +156,12 @@ void Viscosity::addTransposed(const Step& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     Vec3 push(&force_[3 * i]);
     if (s.flow.beside[i] && !s.scheme.slip) {
-      const float* t = &transposed_[12 * static_cast<std::size_t>(i)];
       const Vec3f g = s.flow.wall(i).gradLambda.cast<float>();
       const double weight = 2 * s.pairs_s / s.fluid.density_kgm3 * viscosity_[i];
-      for (int a = 0; a < 3; ++a) push[a] += weight * Vec3f(t + 4 * a).dot(g);
+      const PairTensors& t = tensors_[i];
+      for (int a = 0; a < 3; ++a)
+        push[a] +=
+            weight * Vec3f(t.transposed(a, 0), t.transposed(a, 1), t.transposed(a, 2)).dot(g);
     }
     right_[i] += push;
   }

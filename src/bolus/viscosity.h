@@ -123,13 +123,13 @@ class Viscosity {
   std::vector<Vec3> drag_ms2_;             // [particle]
   std::vector<Mat3f> slopes_s_;            // [particle]
   std::vector<Mat3f> endSlopes_s_;         // [slot]
-  std::vector<float> transposed_;          // [slot + 1][3][4] slopes, transposed; empty: none
   std::vector<double> wallDrag_;           // [particle]
   std::vector<double> viscosity_, force_;  // [slot]; [slot][3]
   std::vector<double> inertia_;            // [slot], see above
   std::vector<float> field_;               // [slot + 1][12] of Shear; empty: not needed
   ViscosityTable table_;
-  Tensors evenness_;                         // [slot + 1]
+  std::vector<PairTensors> tensors_;         // [slot + 1]
+  bool transposed_ = false;                  // with slopes
   std::vector<Vec3> right_;                  // [slot] right side
   std::vector<float> pair_, own_, inverse_;  // [pair]; [slot + 1] inertia and drag; [slot] sum of
                                              // the pairs' weights, then 1 / diagonal

@@ -64,11 +64,11 @@ TEST(Viscosity, TableFollowsTheLaws) {
 struct Star {
   static constexpr int n = 9, lanes = simd::kLanes;
   std::vector<float> field = std::vector<float>(12 * (n + 1)),
-                     evenness = std::vector<float>(8 * (n + 1)),
                      r = std::vector<float>(n * lanes, 1e18f), g[3], c = r,
                      diagonal = std::vector<float>(n);
   std::vector<int> start = std::vector<int>(n), stop = start,
                    index = std::vector<int>(n * lanes, n);
+  std::vector<PairTensors> tensors = std::vector<PairTensors>(n + 1);
   ViscosityTable table;
   PairViscositySweep sweep;
 
@@ -85,14 +85,14 @@ struct Star {
       Eigen::Map<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(&field[12 * i])
           << gradientAt(x[i]).template cast<float>(),
           velocityAt(x[i]).template cast<float>();
-      for (int k : {0, 1, 2}) evenness[8 * i + k] = 1;
+      for (int k : {0, 1, 2}) tensors[i].even[k] = 1;
       start[i] = i * lanes, stop[i] = start[i] + lanes;
       if (i > 0) join(0, i, i - 1), join(i, 0, start[i]);
     }
     table.make(kThinning);
     sweep = {{start.data(), stop.data(), index.data(), g[0].data(), g[1].data(), g[2].data()},
              r.data(),
-             evenness.data(),
+             tensors.data(),
              0,
              &table,
              field.data(),
@@ -102,7 +102,7 @@ struct Star {
              0.2f,
              c.data(),
              diagonal.data(),
-             nullptr,
+             false,
              nullptr};
     sweep.run(0, n);
   }
