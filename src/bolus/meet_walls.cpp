@@ -101,6 +101,7 @@ int Solver::Impl::pushInside() {
     double rescued = 0;
     for (int i = begin; i < end; ++i)
       if (!isGone(particles.state[i])) {
+        held[i].fastestWall_ms = std::max(held[i].fastestWall_ms, fastestWall_ms);
         if (!isClear(i)) rescued += followContacts(i) ? 0.0 : findContacts(i);
         gap_m[i] = localGap_m(contacts[i]);
         keepOutOfSlits(i);
@@ -207,8 +208,7 @@ bool Solver::Impl::findContacts(int i) {
 // How far a particle and the walls may have moved since its walls were last integrated.
 double Solver::Impl::movedSinceHeld_m(int i) const {
   const Held& h = held[i];
-  return (particles.positions[i] - h.place).norm() +
-         (time_s - h.time_s) * std::max(fastestWall_ms, h.fastestWall_ms);
+  return (particles.positions[i] - h.place).norm() + (time_s - h.time_s) * h.fastestWall_ms;
 }
 
 // Where the walls' integrals saw no wall near there are no contacts to look for.
@@ -234,12 +234,13 @@ bool Solver::Impl::followContacts(int i) {
 
 // While walls and particles hardly move, in wcsph's short steps or where walls stand still, most of
 // the time would go into the same integrals again. The last ones serve on, with their slopes; no
-// longer than walls as fast as they were then or are now take to move.
+// longer than walls as fast as the fastest since then take to move. Of walls that are out of reach
+// nothing is felt until they, or the particle, can have come within it.
 bool Solver::Impl::followWalls(int i) {
   Held& h = held[i];
   const Vec3 moved = particles.positions[i] - h.place;
   const double since_s = time_s - h.time_s;
-  const double most = std::max(fastestWall_ms, h.fastestWall_ms) > 0 ? kHeldMoveOfWalls : kHeldMove;
+  const double most = h.fastestWall_ms > 0 ? kHeldMoveOfWalls : kHeldMove;
   const double moved_m = movedSinceHeld_m(i);
   if (moved_m < most * def.spacing_m || h.sample.clear_m - moved_m > kernel.support_m()) {
     walls[i] = field.nearTo(h.sample, moved, since_s);

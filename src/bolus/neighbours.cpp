@@ -12,6 +12,7 @@ namespace {
 // Lists that lie one behind the other, without the gaps of who is no longer near, are read in half
 // the time by this many particles (40,000: 20 ns for 45); a round of the threads is worth it.
 constexpr int kGapsMatter = 4000;
+const Eigen::Vector3i kOne = Eigen::Vector3i::Ones();
 
 /// Sorted points that one cell's own look at, as flat arrays of whole vectors.
 struct Block {

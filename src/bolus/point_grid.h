@@ -12,7 +12,6 @@
 namespace swallowclip::bolus {
 
 inline constexpr int kMaxCells = 1 << 21;  ///< a stray point must not cost a continent's memory
-inline const Eigen::Vector3i kOne = Eigen::Vector3i::Ones();
 
 /// Points sorted into cubic cells; cell c holds order[start[c]] .. order[start[c + 1] - 1].
 /// Points of one cell keep their index order, so that every sum has a fixed order.

@@ -100,7 +100,7 @@ struct Solver::Impl {
   struct Held {
     WallSample sample;
     Vec3 place = Vec3::Zero();
-    double time_s = -INFINITY, fastestWall_ms = 0;
+    double time_s = -INFINITY, fastestWall_ms = 0;  // of all walls since then
   };
   std::vector<Held> held;  // where and when the walls of a particle were last integrated
   double fastestWall_ms = 0;

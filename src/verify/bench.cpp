@@ -214,7 +214,7 @@ Result<void> bench(const pipeline::RunOptions& options, pipeline::Progress& prog
         "{}\n  {{\"spacing_mm\": {}, \"particles\": {}, \"viscosity_Pas\": {}, \"tolerance\": {}, "
         "\"wall_s_per_s\": {:.4g}, \"slowest_wall_s_per_s\": {:.4g}, \"cpu_s_per_s\": {:.4g}, "
         "\"peer_s_per_s\": {}, "
-        "\"calibration_ns\": {:.4g}, \"us_per_particle_step\": {:.4g}, "
+        "\"loop_ns\": {:.4g}, \"us_per_particle_step\": {:.4g}, "
         "\"first_us_per_particle_step\": {:.4g}, \"steps\": {}, "
         "\"mean_density_error\": {:.6g}, \"max_density_error\": {:.6g}}}",
         rows.empty() ? "" : ",", row.spacing_mm, m->particles, row.viscosity_Pas, row.tolerance,

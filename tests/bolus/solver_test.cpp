@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bolus/wall_field.h"
 #include "shapes.h"
 
 namespace swallowclip::bolus {
@@ -124,6 +125,41 @@ TEST(Solver, ALumpSpreadsInShortStepsToo) {
   EXPECT_LT(densest(), 1.03) << "from " << before;
 }
 
+// A wall out of reach that hurries for a moment and then creeps up: it is felt when it is there.
+TEST(Solver, AWallThatHurriedIsNotForgotten) {
+  const double spacing_m = 1e-3, from_s = 1e-3, for_s = 10e-3, slow_ms = 5e-3, more_ms = 0.175;
+  const testing::Mesh mesh = testing::box({0, 0, 0}, {0.012, 0.012, 0.012}, 0.5e-3);
+  WallMotion walls = testing::still(mesh);
+  walls.standsStill = false;
+  const auto moved_m = [=](double t_s) {
+    const double x = std::clamp((t_s - from_s) / for_s, 0.0, 1.0);
+    return slow_ms * t_s + more_ms * for_s * (x / 2 - std::sin(2 * kPi * x) / (4 * kPi));
+  };
+  walls.at = [&](double t_s, std::vector<Vec3>& x, std::vector<Vec3>& v) {
+    const double phase = std::clamp((t_s - from_s) / for_s, 0.0, 1.0);
+    x = mesh.positions;
+    for (Vec3& p : x) p.x() += moved_m(t_s);
+    v.assign(x.size(), Vec3(slow_ms + more_ms * std::pow(std::sin(kPi * phase), 2), 0, 0));
+  };
+  BolusDef def;
+  def.spacing_m = spacing_m;
+  def.gravity_ms2 = Vec3::Zero();
+  Solver solver(def, walls, 1);
+  const Vec3 place(3.9e-3, 6e-3, 6e-3);
+  ASSERT_TRUE(solver.place(0, {place}));
+  const double alone = solver.particles().densityRatio[0];
+  const KernelTable table{Kernel(def.kernel, 2 * spacing_m)};
+  for (double t_s : {0.012, 0.1, 0.2, 0.25, 0.29, 0.33}) {
+    ASSERT_TRUE(solver.advanceTo(t_s));
+    WallField field(table, spacing_m);
+    std::vector<Vec3> x, v;
+    walls.at(t_s, x, v);
+    field.build(walls.triangles, x, v, place, place);
+    const Vec3& now = solver.particles().positions[0];
+    EXPECT_NEAR(solver.particles().densityRatio[0] - alone, field.sample(now).lambda, 2e-4) << t_s;
+  }
+  EXPECT_GT(solver.particles().densityRatio[0] - alone, 1e-3);
+}
 TEST(Solver, SurfaceMustBeClosed) {
   testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 2e-3);
   mesh.triangles.pop_back();
