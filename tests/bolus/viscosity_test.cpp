@@ -152,8 +152,8 @@ TEST(Viscosity, PairsRubWithTheViscosityHalfWay) {
   EXPECT_NEAR(star.viscosity_Pas(0), 0.7, 1e-6);
 }
 
-// Shear that bends more on one side, as beside a plug: of the mean of both ends' slopes a quarter
-// more would come than is there half way.
+// Shear that bends more on one side, as beside a plug: neither the difference of the velocities nor
+// the mean of the slopes is what is there half way.
 TEST(Viscosity, PairsAlongTheGradientSeeItsCurvature) {
   const double bend_m2s = 3e7;  // v_x = bend z^3
   std::vector<Vec3> x(Star::n, Vec3(0, 0, 1e-3));
