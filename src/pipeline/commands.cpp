@@ -83,8 +83,12 @@ Result<void> simulate(const RunOptions& o, Progress& progress) {
     return usageError("--score", "simulate writes one history, so it takes one score",
                       "Run it once per score.");
   progress.stage("simulating");
-  auto history = simulateSwallow(o, scores.front(), preset->fps, progress);
+  SolverCost cost;
+  auto history = simulateSwallow(o, scores.front(), preset->fps, progress, &cost);
   if (!history) return std::unexpected(history.error());
+  if (cost.steps > 0)
+    progress.note(fmt::format("{} particles, {} steps in {:.1f} s: {:.2f} us of a particle's step",
+                              cost.particles, cost.steps, cost.wall_s, cost.eachStep_us()));
   if (auto saved = frame::saveHistory(*history, o.history); !saved) return saved;
   return reportChanges(o, *history, progress);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/simulation.h"
 
+#include <chrono>
 #include <cmath>
 
 #include "airway/airway_skin.h"
@@ -218,16 +219,16 @@ Result<kinematics::SwallowDef> loadSwallow(const RunOptions& o, int score,
 }
 
 Result<frame::History> simulateSwallow(const RunOptions& o, int score, double fps,
-                                       Progress& progress) {
+                                       Progress& progress, SolverCost* cost) {
   std::filesystem::path swallowFile;
   auto swallow = loadSwallow(o, score, &swallowFile);
   if (!swallow) return std::unexpected(swallow.error());
-  return simulateSwallow(o, *swallow, swallowFile, fps, progress);
+  return simulateSwallow(o, *swallow, swallowFile, fps, progress, cost);
 }
 
 Result<frame::History> simulateSwallow(const RunOptions& o, const kinematics::SwallowDef& swallow,
                                        const std::filesystem::path& swallowFile, double fps,
-                                       Progress& progress) {
+                                       Progress& progress, SolverCost* cost) {
   auto scene = loadScene(o);
   if (!scene) return std::unexpected(scene.error());
   for (const std::string& n : scene->notes) progress.note(n);
@@ -304,12 +305,18 @@ Result<frame::History> simulateSwallow(const RunOptions& o, const kinematics::Sw
   }
   const int frames = static_cast<int>(std::floor(swallow.duration_s * fps + 1e-9)) + 1;
   std::vector<Vec3> p, v;
+  SolverCost spent;
+  const std::int64_t stepsBefore = solver ? solver->stats().steps : 0;
   for (int k = 0; k < frames; ++k) {
     if (interrupted()) return std::unexpected(interruptedError());
     const double t = k / fps;
     const bool isNew = k >= static_cast<int>(h.ledger.size());
     if (solver && isNew) {
-      if (auto step = solver->advanceTo(t); !step) {
+      const auto start = std::chrono::steady_clock::now();
+      auto step = solver->advanceTo(t);
+      spent.wall_s +=
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (!step) {
         Error e = step.error();
         e.remedy +=
             fmt::format("\n  Replay: {} (stopped at frame {} of {})", o.commandLine, k, frames);
@@ -330,7 +337,12 @@ Result<frame::History> simulateSwallow(const RunOptions& o, const kinematics::Sw
       h.landmarks[i].positions.push_back(p[i].cast<float>());
     progress.update(static_cast<double>(k + 1) / frames);
   }
-  if (solver) finishMeta(*solver, m);
+  if (solver) {
+    finishMeta(*solver, m);
+    spent.steps = m.steps - stepsBefore;
+    spent.particles = solver->particles().positions.size();
+  }
+  if (cost) *cost = spent;
   if (keeps) std::filesystem::remove(o.checkpoint, ec);
   return h;
 }

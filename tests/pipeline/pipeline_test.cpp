@@ -14,8 +14,12 @@ TEST_F(Pipeline, OneAndTwoThreadsGiveTheSameState) {
   std::vector<std::uint64_t> digests;
   for (int threads : {1, 2}) {
     options.jobs = threads;
-    const auto history = simulateSwallow(options, 0, 30, notes);
+    SolverCost cost;
+    const auto history = simulateSwallow(options, 0, 30, notes, &cost);
     ASSERT_TRUE(history) << history.error().text();
+    EXPECT_EQ(cost.particles, 621u);
+    EXPECT_EQ(cost.steps, history->meta.steps);
+    EXPECT_GT(cost.eachStep_us(), 0);
     EXPECT_EQ(history->ledger.back().start, 621);  // 5 mL at 2 mm, thesis 4.3
     EXPECT_EQ(history->ledger.back().fluid + history->ledger.back().film, 621);
     EXPECT_EQ(history->ledger.back().escaped, 0);
