@@ -30,6 +30,9 @@ constexpr double kCrowdedDensity = 1.08;  // and at most what it makes of others
 // and the least and most that it reaches farther, in spacings. Assumed (4 to 16, 2 to 4, 0.02 to
 // 0.1, 0.3 to 0.6): they change speed and the order of sums only.
 constexpr double kListSteps = 8, kLeastListSteps = 2, kLeastSkin = 0.05, kMostSkin = 0.5;
+// Who is denser than this and is pushed against a wall gets room made by others; and what walls
+// take from a step that counts, in spacings. Assumed (1.03 to 1.1; 1e-4 to 1e-2).
+constexpr double kTooDense = 1.05, kStopped = 1e-3;
 constexpr double kNearEnd_m = 15e-3;  // this near the UES plane s is looked up every step, assumed
 }  // namespace
 
@@ -128,6 +131,34 @@ void Solver::Impl::keepOutOfSlits(int i) {
   particles.positions[i] = place;
   particles.velocities[i] = carried[i].second;
   contacts[i] = std::move(before);
+}
+
+// A solve for places takes walls for soft: in a fold that closes it sends the layer before the wall
+// through it, contacts take that back, and nobody else moves. There it is done again with who was
+// stopped. Returns how many iterations that took.
+int Solver::Impl::makeRoom(const Flow& flow, double dt_s) {
+  const auto tooDense = [&](int p) {
+    return particles.densityRatio[p] > kTooDense && !contacts[p].empty();
+  };
+  if (frozen || std::ranges::none_of(neighbours.id, tooDense)) return 0;
+  const double least_ms = kStopped * def.spacing_m / dt_s;
+  std::vector<Vec3f> stopped(flow.count(), Vec3f::Zero());
+  std::vector<Vec3> left = moving;
+  bool needed = false;
+  for (int i = 0; i < flow.count(); ++i) {
+    const int p = flow.particle(i);
+    if (contacts[p].empty()) continue;
+    clampVelocity(contacts[p], gap_m[p], def.spacing_m, dt_s, left[p]);
+    const Vec3 taken = moving[p] - left[p];
+    const double taken_ms = taken.norm();
+    if (taken_ms < least_ms) continue;
+    stopped[i] = (taken / taken_ms).cast<float>();
+    needed = needed || tooDense(p);
+  }
+  if (!needed) return 0;
+  moving = std::move(left);
+  return projection.makeRoom(flow, particles.densityRatio, dt_s, std::move(stopped), moving)
+      .iterations;
 }
 
 // Film by the width of the lumen alone, never by density. When the walls part again a film stays on

@@ -214,6 +214,11 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
 void Projection::findAccelerations(const PressureSweep& pressure, int begin, int end) {
   pressure.run(begin, end);
   for (int i = begin; i < end; ++i) {
+    if (!stopped_.empty() && !stopped_[i].isZero(0)) {
+      const Vec3f rest = -stopped_[i].dot(acceleration_.at(i)) * stopped_[i];
+      for (int k = 0; k < 3; ++k) acceleration_[i][k] += rest[k];
+      continue;
+    }
     if (along_[i] == 0) continue;
     const Vec3f w = wall_.at(i), a = acceleration_.at(i);
     const Vec3f more = along_[i] * a - across_[i] * a.dot(w) * w;
@@ -256,19 +261,35 @@ ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<dou
 
 ProjectionReport Projection::constantDensity(const Flow& f, const std::vector<double>& density,
                                              double dt_s, std::vector<Vec3>& v) {
+  return correct(f, density, dt_s, densityK_, v);
+}
+
+ProjectionReport Projection::makeRoom(const Flow& f, const std::vector<double>& density,
+                                      double dt_s, std::vector<Vec3f> stopped,
+                                      std::vector<Vec3>& v) {
+  std::vector<double> fromNothing(density.size(), 0.0);
+  f.sweep([&](int begin, int end, int) { startAt(f, v, fromNothing, begin, end); });
+  stopped_ = std::move(stopped);
+  const ProjectionReport report = correct(f, density, dt_s, fromNothing, v);
+  stopped_.clear();
+  return report;
+}
+
+ProjectionReport Projection::correct(const Flow& f, const std::vector<double>& density, double dt_s,
+                                     std::vector<double>& warmK, std::vector<Vec3>& v) {
   const double perStep = 1 / dt_s, perCorrection = 1 / std::max(dt_s, kCorrection_s);
   findSource(f, v, kLeastDensity > 0, [=, rho = density.data()](int p, double rate_s) {
     return (rate_s + (rho[p] - 1) * perCorrection) * perStep;
   });
   const ProjectionReport report =
-      project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, densityK_);
+      project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, warmK);
   if (report.iterations == 0) return report;
   // places have no momentum to be kept, single precision does
   f.sweep([&](int begin, int end, int) {
     findAccelerations(pressureOf(f, x_), begin, end);
     for (int i = begin; i < end; ++i) {
       v[f.particle(i)] += dt_s * acceleration_.at(i).cast<double>();
-      densityK_[f.particle(i)] = x_[i];
+      warmK[f.particle(i)] = x_[i];
     }
   });
   return report;

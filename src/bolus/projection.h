@@ -87,6 +87,10 @@ class Projection {
   /// Makes the density at the end of the step at most rho0; `velocities` are those that move.
   ProjectionReport constantDensity(const Flow& flow, const std::vector<double>& densityRatio,
                                    double dt_s, std::vector<Vec3>& velocities);
+  /// The same again, when walls have taken from some of these velocities what would go through
+  /// them: along stopped[slot] (of length one, or zero) a particle stays, and others make room.
+  ProjectionReport makeRoom(const Flow& flow, const std::vector<double>& densityRatio, double dt_s,
+                            std::vector<Vec3f> stopped, std::vector<Vec3>& velocities);
   void resize(int particles);
 
   /// Force per area (and rho0) that the velocities' projection of the last step transmits at a
@@ -126,6 +130,8 @@ class Projection {
   void findSource(const Flow& flow, const std::vector<Vec3>& velocities, bool pushes,
                   Source&& source);
   PressureSweep pressureOf(const Flow& flow, const std::vector<float>& k);
+  ProjectionReport correct(const Flow& flow, const std::vector<double>& densityRatio, double dt_s,
+                           std::vector<double>& warmK, std::vector<Vec3>& velocities);
   void findAccelerations(const PressureSweep& pressure, int begin, int end);
   void accelerate(const Flow& flow, double dt_s, std::vector<Vec3>& velocities, const Range& then);
 
@@ -134,9 +140,10 @@ class Projection {
   std::vector<float> along_, across_;  // how much farther particles move along their wall
   std::vector<float> mobility_, freedom_, diagonal_, source_, x_, y_;
   Floats3 wall_, acceleration_, velocity_;
-  std::vector<double> force_;  // [slot][3], of x_
-  std::vector<float> stress_;  // [slot]
-  std::vector<Asked> asked_;   // [chunk]
+  std::vector<Vec3f> stopped_;  // [slot] of makeRoom; empty: nobody is
+  std::vector<double> force_;   // [slot][3], of x_
+  std::vector<float> stress_;   // [slot]
+  std::vector<Asked> asked_;    // [chunk]
   std::vector<StepSweep::Sums> parts_;
 };
 }  // namespace swallowclip::bolus

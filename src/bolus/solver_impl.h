@@ -73,6 +73,7 @@ struct Solver::Impl {
   Flow flow() const { return {neighbours, walls, beside, pool}; }
   void project(double dt_s, Substep& report);
   void pushExplicitly(double dt_s, Substep& report);
+  int makeRoom(const Flow& flow, double dt_s);
   void leaveInSlits(double dt_s);
   void move(double dt_s, Substep& report);
   bool clampSpeed(double dt_s, Vec3& velocity) const;

@@ -9,8 +9,8 @@ namespace swallowclip::bolus {
 namespace {
 constexpr double kShortestStep_s = 5e-6;  // assumed: below it nothing moves any more
 constexpr double kWallCourant = 0.05;     // spacings per step at the fastest wall, DESIGN 5
-// Spacings per step. Contacts reach 0.9: who did not know a wall ends 0.2 before it, and half of the
-// 0.4 that is kept there is the longest push. Assumed (0.5 to 0.7).
+// Spacings per step. Contacts reach 0.9: who did not know a wall ends 0.2 before it, and half of
+// the 0.4 that is kept there is the longest push. Assumed (0.5 to 0.7).
 constexpr double kLongestMove = 0.7;
 // Pressure and viscosity act one after the other, which leaves compression behind where a thick
 // fluid is squeezed: 5 Pa.s at 2 mm, 2.8 / 0.5 / 0.2 per mille on average at 0.6 / 0.25 / 0.125 ms.
@@ -213,6 +213,7 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   shifting.shift(flow, {dt_s, def.spacing_m, mixing}, v, moving, viscosity.endSlopes_s(),
                  [&](int begin, int end) { projection.startFrom(flow, moving, begin, end); });
   report.density = projection.constantDensity(flow, particles.densityRatio, dt_s, moving);
+  report.density.iterations += makeRoom(flow, dt_s);
   const double spacing_ms = def.spacing_m / dt_s;
   flow.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
