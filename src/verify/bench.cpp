@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <filesystem>
 #include <random>
 #include <span>
 #include <thread>
@@ -17,7 +16,6 @@
 #include "bolus/sweeps.h"
 #include "core/file.h"
 #include "pipeline/interrupt.h"
-#include "pipeline/simulation.h"
 #include "verify/case.h"
 #include "verify/domain.h"
 #include "verify/fill.h"
@@ -43,11 +41,6 @@ constexpr double kFirst_s = 0.2;  // of a run, that all spacings have
 // it. So many, unless they have taken so long. Assumed (5 to 15; 5 to 20 s).
 constexpr int kRuns = 9;
 constexpr double kLong_s = 10;
-// A swallow, score 0 of component 4, until the tongue carries the bolus back: a minute at 0.5 mm.
-constexpr int kComponent = 4, kScore = 0;
-constexpr double kSwallow_s = 1.0, kFramesPerSecond = 30;
-constexpr std::array kBoluses{"thin", "thesis-honey", "pudding"};
-constexpr std::array kSpacings_mm{2.0, 1.0, 0.5};
 constexpr Row kThreadsRow{1.0, 1.0, 1e-4, kFirst_s, 0};  // which one thread does as well
 
 double stepCap_s(double spacing_mm) {
@@ -178,48 +171,9 @@ std::string scalingTable(std::span<const Measured> measured) {
                            kRows[a].tolerance * 100, line);
   }
   return fmt::format(
-      "\nScaling in the tube: microseconds of a particle's step over the first {} s, beside the "
-      "number of particles\n{}",
+      "\nScaling: microseconds of a particle's step over the first {} s, beside the number of "
+      "particles\n{}",
       kFirst_s, lines);
-}
-
-Result<pipeline::SolverCost> fastestSwallow(const pipeline::RunOptions& options, const char* bolus,
-                                            double spacing_mm, pipeline::Progress& progress) {
-  pipeline::RunOptions o = options;
-  o.component = kComponent;
-  o.scores = {kScore};
-  o.bolus = bolus;
-  o.spacing_mm = spacing_mm;
-  std::filesystem::path file;
-  auto swallow = pipeline::loadSwallow(o, kScore, &file);
-  if (!swallow) return std::unexpected(swallow.error());
-  swallow->duration_s = kSwallow_s;
-  pipeline::SolverCost best{.wall_s = INFINITY};
-  const Clock clock;
-  for (int k = 0; k < kRuns && (k == 0 || clock.wall_s() < kLong_s); ++k) {
-    pipeline::SolverCost cost;
-    auto run = pipeline::simulateSwallow(o, *swallow, file, kFramesPerSecond, progress, &cost);
-    if (!run) return std::unexpected(run.error());
-    if (cost.wall_s < best.wall_s) best = cost;
-  }
-  return best;
-}
-
-Result<void> printSwallows(const pipeline::RunOptions& options, pipeline::Progress& progress) {
-  progress.print(
-      fmt::format("\nScaling in a swallow: the same for component {}, score {}, up to {} s\n",
-                  kComponent, kScore, kSwallow_s));
-  for (const char* bolus : kBoluses) {
-    std::string line;
-    for (const double spacing_mm : kSpacings_mm) {
-      progress.stage(fmt::format("{} at {} mm", bolus, spacing_mm));
-      auto cost = fastestSwallow(options, bolus, spacing_mm, progress);
-      if (!cost) return std::unexpected(cost.error());
-      line += fmt::format(" {:>9} {:>6.3f}", cost->particles, cost->eachStep_us());
-    }
-    progress.print(fmt::format("{:>20}{}\n", bolus, line));
-  }
-  return {};
 }
 }  // namespace
 
@@ -274,7 +228,6 @@ Result<void> bench(const pipeline::RunOptions& options, pipeline::Progress& prog
     if (!one || !all) return std::unexpected((one ? all : one).error());
     progress.print(fmt::format("{} threads are {:.2f} times as fast as one at {} particles.\n",
                                options.jobs, one->wall_s / all->wall_s, one->particles));
-    if (auto ok = printSwallows(options, progress); !ok) return ok;
   }
   return writeFile(options.verify.out / "bench.json", fmt::format("[{}\n]\n", rows));
 }
