@@ -6,8 +6,9 @@
 // one for velocities, one for places: what density is above rest moves particles apart and leaves
 // their velocities alone, or every rearrangement would stir the flow. Both are solved with k >= 0
 // by projected gradient steps, scaled by the diagonal and with momentum (Nesterov 1983; restarted
-// as O'Donoghue & Candes 2015). Walls enter nowhere else. Inner loops in single precision; what
-// changes a velocity is summed in double from antisymmetric terms, so that momentum is kept.
+// as O'Donoghue & Candes 2015). Walls enter nowhere else but in makeRoom. Inner loops in single
+// precision; what changes a velocity is summed in double from antisymmetric terms, so that momentum
+// is kept.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@ namespace {
 constexpr double kSpacing_m = 1e-3, kStep_s = 1e-4;
 constexpr int kAcross = 6;
 
-/// A block that is 15 % too dense, far from all walls.
+/// A block with 17 % more particles than fit, far from all walls.
 struct Block {
   Kernel kernel{KernelKind::cubicSpline, supportPerSpacing(KernelKind::cubicSpline) * kSpacing_m};
   KernelTable table{kernel};
