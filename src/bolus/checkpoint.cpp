@@ -104,6 +104,7 @@ void all(Archive& a, Impl& s) {
   a(s.caps);
   a(s.shutBefore);
   a(s.skipped);
+  if (s.tension) a(s.tension->held());
   s.coating.archive(a);
 }
 

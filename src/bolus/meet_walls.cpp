@@ -63,6 +63,13 @@ void Solver::Impl::lookAtWalls(double t_s) {
 }
 
 // A branch shut lip to lip and empty is no wall: the tube goes, a cap closes the slit it leaves.
+// What was integrated was other walls.
+void Solver::Impl::forgetWalls() {
+  for (HeldWalls& h : held) h.time_s = -INFINITY;
+  if (!tension) return;
+  for (HeldWalls& h : tension->held()) h.time_s = -INFINITY;
+}
+
 void Solver::Impl::shutBranches(double t_s) {
   if (wallTriangles.empty()) wallTriangles = motion->triangles;
   if (!motion->sealed || motion->branch.empty()) return;
@@ -74,7 +81,7 @@ void Solver::Impl::shutBranches(double t_s) {
   }
   if (shut == shutBefore) return;
   shutBefore = shut;
-  for (Held& h : held) h.time_s = -INFINITY;
+  forgetWalls();
   const std::size_t own = motion->triangles.size();
   const auto markTubes = [&](auto&& taken) {
     for (std::size_t k = 0; k < own; ++k)
@@ -238,7 +245,7 @@ bool Solver::Impl::findContacts(int i) {
 
 // How far a particle and the walls may have moved since its walls were last integrated.
 double Solver::Impl::movedSinceHeld_m(int i) const {
-  const Held& h = held[i];
+  const HeldWalls& h = held[i];
   return (particles.positions[i] - h.place).norm() + (time_s - h.time_s) * h.fastestWall_ms;
 }
 
@@ -268,7 +275,7 @@ bool Solver::Impl::followContacts(int i) {
 // longer than walls as fast as the fastest since then take to move. Of walls that are out of reach
 // nothing is felt until they, or the particle, can have come within it.
 bool Solver::Impl::followWalls(int i) {
-  Held& h = held[i];
+  HeldWalls& h = held[i];
   const Vec3 moved = particles.positions[i] - h.place;
   const double since_s = time_s - h.time_s;
   const double most = h.fastestWall_ms > 0 ? kHeldMoveOfWalls : kHeldMove;

@@ -46,7 +46,13 @@ constexpr int kRateCap = 500;     // assumed (200 to 1000): a long gap of 150 sp
 // A pressure that passes as it is would never change: plane Poiseuille flow starts 3.6 % too slowly
 // then, and 2.1 % with two or more. Places have no such memory: they may do without any.
 constexpr int kLeastDensity = 0, kLeastRate = 2;
-constexpr float kNoLimit = 1e30f;  // m^2/s^2
+// A liquid does not dilate: it has tension instead. Without it a thick fluid that is drawn apart
+// becomes thinner by gaps as readily as by flow: the front of 5 Pa.s that a tongue squeezes out
+// lost a third of its density, and crumbled. So dilation is resisted like shear, with kHold times
+// the viscosity. At a surface, too: that is a rate's stress, which does nothing to what stands
+// still or turns. Assumed (10 to 50: 10 and 5 % of a stretch become gaps with 10 and 20).
+constexpr double kHold = 20;
+constexpr float kNoLimit_m2 = 1e25f;
 }  // namespace
 
 void Projection::resize(int n) {
@@ -57,7 +63,8 @@ void Projection::resize(int n) {
 void Projection::prepare(const Flow& f) {
   const Neighbours& nb = f.neighbours;
   const int n = f.count();
-  for (auto* a : {&mobility_, &freedom_, &along_, &diagonal_, &source_, &x_, &y_}) {
+  for (auto* a : {&mobility_, &freedom_, &along_, &diagonal_, &bulk_m2s_, &source_, &room_,
+                  &hold_m2_, &x_, &y_}) {
     a->resize(n + simd::kLanes);
     std::fill(a->begin() + n, a->end(), 0.f);
   }
@@ -93,9 +100,14 @@ void Projection::pushByLastPressure(const Flow& f, double dt_s, std::vector<Vec3
   for (int i = begin; i < end; ++i) v[f.particle(i)] += dt_s * acceleration_.at(i).cast<double>();
 }
 
-void Projection::brake(const Flow& f, std::span<const double> wallDrag, int begin, int end) {
+void Projection::brake(const Flow& f, const Friction& friction, int begin, int end) {
   for (int i = begin; i < end; ++i) {
-    if (!wallDrag.empty()) mobility_[i] = static_cast<float>(1 / (1 + wallDrag[f.particle(i)]));
+    if (!friction.wallDrag.empty())
+      mobility_[i] = static_cast<float>(1 / (1 + friction.wallDrag[f.particle(i)]));
+    bulk_m2s_[i] =
+        friction.viscosity_Pas.empty()
+            ? 0
+            : static_cast<float>(kHold * friction.viscosity_Pas[i] / friction.density_kgm3);
     freedom_[i] = mobility_[i] * (1 + along_[i]);
   }
 }
@@ -126,8 +138,8 @@ PressureSweep Projection::pressureOf(const Flow& f, const std::vector<float>& k)
   return {f.lists(), k.data(), mobility_.data(), wall_.data(), acceleration_.data()};
 }
 
-/// source(particle, rate of rho* in 1/s) into source_; with `pushes`, what the first pressure does,
-/// too.
+/// want(slot, rate of rho* in 1/s) into source_, room_ and hold_m2_; with `pushes`, what the first
+/// pressure does, too.
 template <class Source>
 void Projection::findSource(const Flow& f, const std::vector<Vec3>& v, bool pushes,
                             Source&& source) {
@@ -143,7 +155,10 @@ void Projection::findSource(const Flow& f, const std::vector<Vec3>& v, bool push
       if (f.beside[i])
         rate += static_cast<float>(v[f.particle(i)].dot(wall_.at(i).cast<double>()) -
                                    kWallMirror * f.wall(i).flux_s);
-      out[i] = static_cast<float>(source(f.particle(i), static_cast<double>(rate)));
+      const Want want = source(i, static_cast<double>(rate));
+      out[i] = static_cast<float>(want.source);
+      room_[i] = static_cast<float>(want.room);
+      hold_m2_[i] = full ? kNoLimit_m2 : static_cast<float>(want.hold);
       asked.add(out[i], full);
     }
     asked_[chunk] = asked;
@@ -170,9 +185,10 @@ ProjectionReport Projection::project(const Flow& f, double dt_s, int least, int 
                  wall_.data(),
                  source_.data(),
                  diagonal_.data(),
+                 room_.data(),
+                 hold_m2_.data(),
                  kRelaxation,
                  0,
-                 full ? -kNoLimit : 0.f,
                  x_.data(),
                  y_.data()};
   parts_.resize((n + kSweepChunk - 1) / kSweepChunk);
@@ -247,12 +263,13 @@ ProjectionReport Projection::divergenceFree(const Flow& f, const std::vector<dou
                                             double dt_s, std::vector<Vec3>& v, const Range& then) {
   // what is still below rest density may close up; nothing is pulled apart
   const double perStep = 1 / dt_s;
-  findSource(f, v, kLeastRate > 0, [&, rho = density.data()](int p, double rate_s) {
+  findSource(f, v, kLeastRate > 0, [&, rho = density.data()](int i, double rate_s) {
+    const int p = f.particle(i);
     const double room = std::max(0.0, 1 - rho[p]);
     const double open = full ? 0
                              : std::max(0.0, room - kOpening) * perStep +
                                    std::min(room, kOpening) * (1 / kSettle_s);
-    return (rate_s - open) * perStep;
+    return Want{(rate_s - open) * perStep, open * perStep, bulk_m2s_[i] * dt_s};
   });
   const ProjectionReport report = project(f, dt_s, kLeastRate, kRateCap, tolerances.rate, rateK_);
   accelerate(f, dt_s, v, then);
@@ -278,8 +295,8 @@ ProjectionReport Projection::makeRoom(const Flow& f, const std::vector<double>& 
 ProjectionReport Projection::correct(const Flow& f, const std::vector<double>& density, double dt_s,
                                      std::vector<double>& warmK, std::vector<Vec3>& v) {
   const double perStep = 1 / dt_s, perCorrection = 1 / std::max(dt_s, kCorrection_s);
-  findSource(f, v, kLeastDensity > 0, [=, rho = density.data()](int p, double rate_s) {
-    return (rate_s + (rho[p] - 1) * perCorrection) * perStep;
+  findSource(f, v, kLeastDensity > 0, [=, &f, rho = density.data()](int i, double rate_s) {
+    return Want{(rate_s + (rho[f.particle(i)] - 1) * perCorrection) * perStep};
   });
   const ProjectionReport report =
       project(f, dt_s, kLeastDensity, kDensityCap, tolerances.density, warmK);

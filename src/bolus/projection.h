@@ -71,11 +71,16 @@ class Projection {
   /// divergenceFree then finds the whole pressure anew.
   void pushByLastPressure(const Flow& flow, double dt_s, std::vector<Vec3>& velocities, int begin,
                           int end);
-  /// Then: `wallDrag` ([particle], dt times the rate at which walls brake it; empty: none) lets
-  /// pressure move a particle only as far as the walls' friction allows within the step:
-  /// a_i / (1 + drag_i), the implicit Brinkman term. Without it a narrow slit is squeezed out as if
-  /// the fluid had no viscosity.
-  void brake(const Flow& flow, std::span<const double> wallDrag, int begin, int end);
+  struct Friction {
+    std::span<const double> wallDrag;  ///< [particle] dt times the rate at which walls brake it
+    std::span<const double> viscosity_Pas;  ///< [slot]
+    double density_kgm3 = 0;
+  };
+  /// Then, where there is any: `wallDrag` lets pressure move a particle only as far as the walls'
+  /// friction allows within the step: a_i / (1 + drag_i), the implicit Brinkman term. Without it a
+  /// narrow slit is squeezed out as if the fluid had no viscosity. And viscosity holds a liquid
+  /// together, see kHold.
+  void brake(const Flow& flow, const Friction& friction, int begin, int end);
   /// When all are braked.
   void takeLastPressureBack(const Flow& flow, double dt_s, std::vector<Vec3>& velocities, int begin,
                             int end);
@@ -127,6 +132,9 @@ class Projection {
   };
   void startAt(const Flow& flow, const std::vector<Vec3>& velocities,
                const std::vector<double>& warmK, int begin, int end);
+  struct Want {
+    double source, room = 0, hold = 0;  // see StepSweep
+  };
   template <class Source>
   void findSource(const Flow& flow, const std::vector<Vec3>& velocities, bool pushes,
                   Source&& source);
@@ -139,7 +147,7 @@ class Projection {
   std::vector<double> densityK_, rateK_;  // [particle], where the next solve starts
   // [slot] and one slot of zeros
   std::vector<float> along_, across_;  // how much farther particles move along their wall
-  std::vector<float> mobility_, freedom_, diagonal_, source_, x_, y_;
+  std::vector<float> mobility_, freedom_, diagonal_, bulk_m2s_, source_, room_, hold_m2_, x_, y_;
   Floats3 wall_, acceleration_, velocity_;
   std::vector<Vec3f> stopped_;  // [slot] of makeRoom; empty: nobody is
   std::vector<double> force_;   // [slot][3], of x_

@@ -142,7 +142,7 @@ Result<RelaxReport> Solver::relax(double t_s, double longest_s) {
   s.frozen = false;
   s.settlingViscosity_Pas = 0;
   s.infeasible_s = 0;
-  for (Impl::Held& h : s.held) h.time_s = -INFINITY;  // of walls that stood still
+  s.forgetWalls();  // those that stood still
   std::fill(s.particles.velocities.begin(), s.particles.velocities.end(), Vec3::Zero());
   s.meetWalls(t_s);
   s.outside = {};

@@ -47,6 +47,7 @@ struct Solver::Impl {
 
   void evaluateWalls(double t_s);
   void lookAtWalls(double t_s);
+  void forgetWalls();
   void shutBranches(double t_s);
   void wrapPeriods();
   void sortParticles(std::vector<double>& more);  ///< `more`: a caller's own array of them
@@ -98,12 +99,7 @@ struct Solver::Impl {
   std::vector<std::vector<Contact>> contacts;
   std::vector<double> gap_m;  // localGap_m of them
   std::vector<WallSample> walls;
-  struct Held {
-    WallSample sample;
-    Vec3 place = Vec3::Zero();
-    double time_s = -INFINITY, fastestWall_ms = 0;  // of all walls since then
-  };
-  std::vector<Held> held;  // where and when the walls of a particle were last integrated
+  std::vector<HeldWalls> held;
   double fastestWall_ms = 0;
   std::vector<Vec3> contactsAt, wallsBefore;   // places where contacts were last looked for; walls
   double wallsAt_s = 0;                        // when they were last looked at

@@ -92,6 +92,7 @@ void Solver::Impl::start(double t_s, std::vector<Vec3> places, std::vector<Vec3>
   shifting.resize(static_cast<int>(n));
   viscosity.forget();
   wcsph.start();
+  if (tension) tension->start(static_cast<int>(n));
   coating.start(motion->triangles.size(), n);
   lastStep_s = 0;
   projection.tolerances = {def.densityTolerance, def.rateTolerance, def.solveShare};
@@ -190,11 +191,14 @@ void Solver::Impl::project(double dt_s, Substep& report) {
   // al. 2006, sec. 3.2). On gravity alone walls would carry a share of it every step and pressure
   // only the rest: 6 % too little in a 10 mm wide column of 1 Pa.s at steps of 1 ms, half or less
   // in a squeezed gap with 12 nu dt / h^2 = 1.
+  Projection::Friction friction;
+  if (!settling)
+    friction = {viscosity.wallDrag(), viscosity.viscosity_Pas(), def.fluid.density_kgm3};
   flow.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) v[flow.particle(i)] += dt_s * def.gravity_ms2;
     projection.pushByLastPressure(flow, dt_s, v, begin, end);
     viscosity.prepare(viscous, begin, end);
-    projection.brake(flow, settling ? std::span<const double>() : viscosity.wallDrag(), begin, end);
+    projection.brake(flow, friction, begin, end);
   });
   report.viscosityIterations = viscosity.exchange(viscous).iterations;
   const auto takeBack = [&](int begin, int end) {
@@ -284,8 +288,10 @@ void Solver::Impl::pushExplicitly(double dt_s, Substep& report) {
 Solver::Impl::Substep Solver::Impl::substep(double dt_s) {
   Substep report;
   if (tension)
-    tension->measure(flow(), particles.positions, active,
-                     {wallTriangles, wallPositions, wallVelocities, skipped, field}, def.period_m);
+    tension->measure(
+        flow(), particles.positions, active,
+        {wallTriangles, wallPositions, wallVelocities, skipped, field, time_s, fastestWall_ms},
+        def.period_m);
   if (compressible())
     pushExplicitly(dt_s, report), moving = particles.velocities;
   else

@@ -53,13 +53,16 @@ SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
     const F8 diagonal = load(s.diagonal + i), x = load(s.x + i), y = load(s.y + i);
     const I8 part = (kCount < allInt(lanes)) & (diagonal > all(0));
     const F8 scale = largest(diagonal, all(1e-30f)) / all(s.relax);
-    const F8 next = largest(all(s.least), y + left / scale);
+    const F8 hold = load(s.hold + i), held = scale * hold;
+    const F8 pulled = (y * scale + left + load(s.room + i)) * hold / (held + all(1));
+    const F8 next = largest(all(0), y + left / scale) + smallest(all(0), pulled);
     // too much pressure is as wrong as too little, unless it is zero already
     const F8 way = select(part, next - y, all(0)), size = magnitude(way) * scale;
     residual.add(size);
     most = largest(most, size);
     ahead.add(way * select(part, next - x, all(0)));
-    const F8 on = largest(all(s.least), next + all(s.momentum) * (next - x));
+    const F8 onward = next + all(s.momentum) * (next - x);
+    const F8 on = select(hold > all(0), onward, largest(all(0), onward));
     const F8 newX = select(part, next, all(0)), newY = select(part, on, all(0));
     if (lanes == kLanes) {
       store(s.x + i, newX);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bolus/tension.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace swallowclip::bolus {
@@ -10,6 +11,11 @@ namespace {
 // 1.6 times its value; at 0.55 to 0.65 it settles within 10 % of it, without a factor; from 0.7 on
 // surfaces fray (6 mm: pressure varies by a fifth across the drop).
 constexpr double kTakenOff = 0.6;
+
+// Farther than this, relative to the walls, from where walls were last integrated, or when the
+// fastest walls have gone that far, it is done again: spacings, both assumed (0.1 to 0.2, 0.2 to
+// 0.5).
+constexpr double kHeldMove = 0.15, kHeldMoveOfWalls = 0.3;
 
 double meanDistance_m(const Kernel& kernel) {  // int r W dV, by the midpoint rule
   constexpr int kSteps = 2000;
@@ -65,15 +71,40 @@ void Tension::measure(const Flow& flow, std::span<const Vec3> positions,
   add(flow, neighbours_, attraction_m2s2_);
   add(flow, flow.neighbours, -kTakenOff * attraction_m2s2_);
   if (walls.triangles.empty() || adhesion_m2s2_ == 0) return;
-  field_.follow(walls.field, walls.triangles, walls.positions, walls.velocities, walls.skipped);
+  due_.resize(flow.count());
   flow.sweep([&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       const int p = flow.particle(i);
-      const WallSample far = field_.sample(positions[p]), &near = flow.wall(i);
+      held_[p].fastestWall_ms = std::max(held_[p].fastestWall_ms, walls.fastest_ms);
+      due_[i] = isDue(held_[p], positions[p], walls.time_s);
+    }
+  });
+  if (std::ranges::find(due_, 1) != due_.end())
+    field_.follow(walls.field, walls.triangles, walls.positions, walls.velocities, walls.skipped);
+  flow.sweep([&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) {
+      const int p = flow.particle(i);
+      const Vec3& x = positions[p];
+      HeldWalls& h = held_[p];
+      if (due_[i]) h = {field_.sample(x), x, walls.time_s, walls.fastest_ms};
+      const WallSample far = field_.nearTo(h.sample, x - h.place, walls.time_s - h.time_s);
+      const WallSample& near = flow.wall(i);
       acceleration_[p] += adhesion_m2s2_ * (far.gradLambda - kTakenOff * near.gradLambda);
       stress_[p] -= adhesion_m2s2_ / 2 * (far.lambdaSlope - kTakenOff * near.lambdaSlope);
     }
   });
+}
+
+// The attraction reaches far and is smooth, and serves on for longer than what bears pressure.
+bool Tension::isDue(const HeldWalls& h, const Vec3& x, double time_s) const {
+  const WallSample& s = h.sample;
+  const Vec3 moved = x - h.place;
+  const double since_s = time_s - h.time_s, walls_m = since_s * h.fastestWall_ms;
+  if (!std::isfinite(since_s)) return true;
+  if (s.clear_m - moved.norm() - walls_m > kernel_.support_m()) return false;
+  Vec3 away = moved;
+  if (s.friction > 0) away -= since_s / s.friction * s.frictionVelocity;
+  return !(away.norm() < kHeldMove * spacing_m_ && walls_m < kHeldMoveOfWalls * spacing_m_);
 }
 
 void Tension::push(double dt_s, std::vector<Vec3>& v) const {

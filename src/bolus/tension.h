@@ -34,7 +34,10 @@ class Tension {
     std::span<const Vec3> positions, velocities;
     std::span<const std::uint8_t> skipped;
     const WallField& field;
+    double time_s, fastest_ms;
   };
+  /// Before a new run of as many particles.
+  void start(int particles) { held_.assign(particles, {}); }
   /// Forces between particles at `positions`, of which `active` take part: those of `flow`.
   void measure(const Flow& flow, std::span<const Vec3> positions,
                std::span<const std::uint8_t> active, const Walls& walls, const Vec3& period_m);
@@ -44,16 +47,21 @@ class Tension {
   /// what holds particles apart outweighs it by what the surface's curvature asks for.
   void addPressure_Pa(const std::vector<double>& densityRatio,
                       std::vector<double>& pressure_Pa) const;
+  /// [particle], part of the state of a run.
+  std::vector<HeldWalls>& held() { return held_; }
   double longestStep_s() const { return longestStep_s_; }
 
  private:
   void add(const Flow& flow, const Neighbours& pairs, double attraction);
+  bool isDue(const HeldWalls& held, const Vec3& position, double time_s) const;
 
   double density_kgm3_, spacing_m_, attraction_m2s2_, adhesion_m2s2_, longestStep_s_;
   Kernel kernel_;
   KernelTable table_;
   WallField field_;
   Neighbours neighbours_;
+  std::vector<HeldWalls> held_;            // in field_
+  std::vector<std::uint8_t> due_;          // [slot] whose walls are to be integrated again
   std::vector<Vec3> acceleration_;         // [particle], m/s^2
   std::vector<double> stress_;             // [particle], m^2/s^2
   std::vector<float> half_, transmitted_;  // [slot]

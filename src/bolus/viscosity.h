@@ -79,6 +79,8 @@ class Viscosity {
 
   /// [particle] of the last step: its length times the rate at which walls brake the particle.
   const std::vector<double>& wallDrag() const { return wallDrag_; }
+  /// [slot] after `prepare`.
+  std::span<const double> viscosity_Pas() const { return viscosity_; }
 
   /// [particle] of the last step: what the next one's viscosities follow from. Empty where
   /// viscosity is constant.

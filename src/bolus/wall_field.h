@@ -35,6 +35,13 @@ struct WallSample {
   int nearestTriangle = -1;   ///< by centroid; -1 when no wall is within reach
 };
 
+/// Walls as they were last integrated for a particle, and where and when that was.
+struct HeldWalls {
+  WallSample sample;
+  Vec3 place = Vec3::Zero();
+  double time_s = -INFINITY, fastestWall_ms = 0;  ///< of all walls since then
+};
+
 struct Contact {
   Vec3 point, inward, velocity;  ///< wall point, unit direction into the fluid, its velocity
   double distance_m = 0;         ///< negative when the particle is outside

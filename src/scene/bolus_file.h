@@ -12,9 +12,15 @@
 
 namespace swallowclip::scene {
 
-/// Density, rheology and coating out of any object that holds their keys; other keys are left
-/// alone.
-bolus::Fluid readFluid(const JsonNode& node);
+/// Surface of a fluid for which nothing else is given.
+struct Surface {
+  double tension_Nm = 0;  ///< 0: none
+  double contactAngle_rad = bolus::Fluid{}.contactAngle_rad;
+};
+
+/// Density, rheology, surface and coating out of any object that holds their keys; other keys are
+/// left alone.
+bolus::Fluid readFluid(const JsonNode& node, const Surface& usual = {});
 
 struct BolusDef {
   std::string name;         ///< as in file names: lower-case letters, digits, '-'

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How the solve for places makes room beside particles that a wall has stopped.
+// How the solve for places makes room beside particles that a wall has stopped; and what holds a
+// thick liquid together.
 #include "bolus/projection.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@ namespace {
 constexpr double kSpacing_m = 1e-3, kStep_s = 1e-4;
 constexpr int kAcross = 6;
 
-/// A block with 17 % more particles than fit, far from all walls.
+/// A block with 17 % more particles than fit, or as many as fit, far from all walls.
 struct Block {
   Kernel kernel{KernelKind::cubicSpline, supportPerSpacing(KernelKind::cubicSpline) * kSpacing_m};
   KernelTable table{kernel};
@@ -23,11 +24,13 @@ struct Block {
   Projection projection;
   Flow flow{neighbours, walls, beside, pool};
 
-  Block() {
-    const double apart_m = 0.95 * kSpacing_m;
-    for (int x = 0; x < kAcross; ++x)
-      for (int y = 0; y < kAcross; ++y)
-        for (int z = 0; z < kAcross; ++z) places.push_back(apart_m * Vec3(x, y, z));
+  const double half_m;  ///< from the midst to the outermost particles
+
+  explicit Block(double apart_m = 0.95 * kSpacing_m, int across = kAcross)
+      : half_m((across - 1) / 2.0 * apart_m) {
+    for (int x = 0; x < across; ++x)
+      for (int y = 0; y < across; ++y)
+        for (int z = 0; z < across; ++z) places.push_back(apart_m * Vec3(x, y, z));
     const std::size_t n = places.size();
     neighbours.build(places, {}, table, std::pow(kSpacing_m, 3), Vec3::Zero(), 0, pool);
     walls.resize(n);
@@ -37,11 +40,31 @@ struct Block {
     for (std::size_t i = 0; i < n; ++i) density[neighbours.id[i]] = neighbours.sumW[i];
     projection.resize(static_cast<int>(n));
     projection.tolerances = {1e-5, 1e-5, 1e-4};
+    prepare(0);
+  }
+  void prepare(double viscosity_Pas) {
+    const std::vector<double> viscosities(flow.count(), viscosity_Pas);
     projection.prepare(flow);
     projection.pushByLastPressure(flow, kStep_s, velocities, 0, flow.count());
-    projection.brake(flow, {}, 0, flow.count());
+    projection.brake(flow, {{}, viscosities, 1000}, 0, flow.count());
     projection.takeLastPressureBack(flow, kStep_s, velocities, 0, flow.count());
     projection.startFrom(flow, velocities, 0, flow.count());
+  }
+  void hold(double viscosity_Pas) {
+    prepare(viscosity_Pas);
+    projection.divergenceFree(flow, density, kStep_s, velocities, [](int, int) {});
+  }
+  Vec3 fromMidst(int particle) const { return places[particle] - Vec3::Constant(half_m); }
+  /// Slopes of the velocity along x, y and z, least squares over the inner half.
+  Vec3 stretch_s() const {
+    Vec3 sums = Vec3::Zero(), squares = Vec3::Zero();
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      const Vec3 x = fromMidst(static_cast<int>(p));
+      if (x.cwiseAbs().maxCoeff() > half_m / 2) continue;
+      sums += x.cwiseProduct(velocities[p]);
+      squares += x.cwiseAbs2();
+    }
+    return sums.cwiseQuotient(squares);
   }
   bool isInFirstLayer(int particle) const { return places[particle].x() < kSpacing_m / 2; }
 };
@@ -79,6 +102,43 @@ TEST(Projection, NobodyStoppedIsTheSolveForPlaces) {
                             std::vector<Vec3f>(other.flow.count(), Vec3f::Zero()),
                             other.velocities);
   EXPECT_EQ(one.velocities, other.velocities);
+}
+
+TEST(Projection, AThickLiquidThatIsDrawnOutBecomesThinnerNotLessDense) {
+  constexpr double kRate_s = 10;
+  const auto drawn = [](double viscosity_Pas) {
+    Block b(kSpacing_m, 12);
+    b.projection.tolerances.rate = 1e-7;
+    for (std::size_t p = 0; p < b.places.size(); ++p)
+      b.velocities[p] = kRate_s * b.fromMidst(static_cast<int>(p)).x() * Vec3::UnitX();
+    b.hold(viscosity_Pas);
+    Vec3 momentum = Vec3::Zero();
+    for (const Vec3& v : b.velocities) momentum += v;
+    EXPECT_LT(momentum.norm(), 1e-12);
+    return b.stretch_s();
+  };
+  // the root of 20 nu dt is 3 mm at 5 Pa.s, half of the block, and 30 mm
+  const Vec3 thin = drawn(0), thick = drawn(5), stiff = drawn(500);
+  EXPECT_NEAR(thin.sum(), kRate_s, 0.01 * kRate_s) << "nothing holds it";
+  EXPECT_LT(thick.y(), -0.1 * kRate_s);
+  EXPECT_NEAR(thick.y(), thick.z(), 1e-3 * kRate_s);
+  EXPECT_LT(thick.sum(), 0.6 * kRate_s);
+  // of a lattice's layers every other one may lag, which gradW does not see
+  EXPECT_LT(stiff.sum(), 0.2 * kRate_s);
+  EXPECT_GT(stiff.sum(), 0) << "a rate's stress takes none back";
+}
+
+TEST(Projection, WhatStandsStillOrTurnsFeelsNothingOfIt) {
+  Block still(kSpacing_m), turning(kSpacing_m);
+  still.hold(5);
+  for (const Vec3& v : still.velocities) EXPECT_EQ(v, Vec3::Zero());
+  const Vec3 turn_s(3, -2, 5);
+  for (std::size_t p = 0; p < turning.places.size(); ++p)
+    turning.velocities[p] = turn_s.cross(turning.fromMidst(static_cast<int>(p)));
+  const std::vector<Vec3> before = turning.velocities;
+  turning.hold(5);
+  for (std::size_t p = 0; p < before.size(); ++p)
+    EXPECT_LT((turning.velocities[p] - before[p]).norm(), 1e-4 * turn_s.norm() * kSpacing_m) << p;
 }
 }  // namespace
 }  // namespace swallowclip::bolus

@@ -86,9 +86,15 @@ TEST(BolusFile, SurfaceTensionIsReadWithItsAngle) {
   EXPECT_NE(with(R"(, "surface_tension_Nm": 0.03, "contact_angle_deg": 190)")
                 .find("190 is outside 0 to 180"),
             std::string::npos);
-  const std::string alone = with(R"(, "contact_angle_deg": 60)");
+  EXPECT_EQ(with(R"(, "contact_angle_deg": 60)"), "accepted") << "with the usual tension";
+  const std::string alone = with(R"(, "surface_tension_Nm": 0, "contact_angle_deg": 60)");
   EXPECT_NE(alone.find("without surface tension has no effect"), std::string::npos) << alone;
   EXPECT_NE(alone.find("Give \"surface_tension_Nm\""), std::string::npos) << alone;
+}
+
+TEST(BolusFile, ABolusHasTheSurfaceOfWhatIsSwallowed) {
+  EXPECT_EQ(known("thin").fluid.surfaceTension_Nm, 0.055);
+  EXPECT_NEAR(known("thin").fluid.contactAngle_rad, 20 * 3.14159265358979 / 180, 1e-12);
 }
 
 TEST(BolusFile, CoatingIsReadAndGuarded) {
