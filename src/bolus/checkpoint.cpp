@@ -7,7 +7,7 @@
 
 namespace swallowclip::bolus {
 namespace {
-constexpr std::uint64_t kMark = 0x53574243'0000000b;  // "SWBC", layout 11
+constexpr std::uint64_t kMark = 0x53574243'0000000c;  // "SWBC", layout 12
 
 class Writer {
  public:
@@ -182,7 +182,8 @@ Result<void> Solver::restore(std::string_view bytes) {
   all(in, s);
   const std::size_t n = s.particles.positions.size();
   s.projection.resize(static_cast<int>(n));
-  if (s.shifting.last().shift.size() != n || s.shifting.last().push.size() != n)
+  if (s.shifting.last().shift.size() != n || s.shifting.last().push.size() != n ||
+      (s.tension && s.tension->held().size() != n))
     return refuse("its arrays do not fit");
   s.projection.full = s.def.full;
   s.projection.tolerances = {s.def.densityTolerance, s.def.rateTolerance, s.def.solveShare};

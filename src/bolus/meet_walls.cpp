@@ -62,7 +62,6 @@ void Solver::Impl::lookAtWalls(double t_s) {
   if (!samePlaces) wallsBefore = wallPositions;
 }
 
-// A branch shut lip to lip and empty is no wall: the tube goes, a cap closes the slit it leaves.
 // What was integrated was other walls.
 void Solver::Impl::forgetWalls() {
   for (HeldWalls& h : held) h.time_s = -INFINITY;
@@ -70,6 +69,7 @@ void Solver::Impl::forgetWalls() {
   for (HeldWalls& h : tension->held()) h.time_s = -INFINITY;
 }
 
+// A branch shut lip to lip and empty is no wall: the tube goes, a cap closes the slit it leaves.
 void Solver::Impl::shutBranches(double t_s) {
   if (wallTriangles.empty()) wallTriangles = motion->triangles;
   if (!motion->sealed || motion->branch.empty()) return;
@@ -245,8 +245,7 @@ bool Solver::Impl::findContacts(int i) {
 
 // How far a particle and the walls may have moved since its walls were last integrated.
 double Solver::Impl::movedSinceHeld_m(int i) const {
-  const HeldWalls& h = held[i];
-  return (particles.positions[i] - h.place).norm() + (time_s - h.time_s) * h.fastestWall_ms;
+  return held[i].moved_m(particles.positions[i], time_s);
 }
 
 // Where the walls' integrals saw no wall near there are no contacts to look for.

@@ -5,10 +5,10 @@
 //   D_i(v) = V sum (v_i - v_j).gradW_ij + 2 (v_i.grad lambda_i - flux_i)
 // one for velocities, one for places: what density is above rest moves particles apart and leaves
 // their velocities alone, or every rearrangement would stir the flow. Both are solved with k >= 0
-// by projected gradient steps, scaled by the diagonal and with momentum (Nesterov 1983; restarted
-// as O'Donoghue & Candes 2015). Walls enter nowhere else but in makeRoom. Inner loops in single
-// precision; what changes a velocity is summed in double from antisymmetric terms, so that momentum
-// is kept.
+// (for velocities also below, as far as viscosity holds a liquid together) by projected gradient
+// steps, scaled by the diagonal and with momentum (Nesterov 1983; restarted as O'Donoghue & Candes
+// 2015). Walls enter nowhere else but in makeRoom. Inner loops in single precision; what changes a
+// velocity is summed in double from antisymmetric terms, so that momentum is kept.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -147,7 +147,8 @@ class Projection {
   std::vector<double> densityK_, rateK_;  // [particle], where the next solve starts
   // [slot] and one slot of zeros
   std::vector<float> along_, across_;  // how much farther particles move along their wall
-  std::vector<float> mobility_, freedom_, diagonal_, bulk_m2s_, source_, room_, hold_m2_, x_, y_;
+  std::vector<float> bulk_m2s_;        // against dilation, see kHold
+  std::vector<float> mobility_, freedom_, diagonal_, source_, room_, hold_m2_, x_, y_;
   Floats3 wall_, acceleration_, velocity_;
   std::vector<Vec3f> stopped_;  // [slot] of makeRoom; empty: nobody is
   std::vector<double> force_;   // [slot][3], of x_

@@ -98,13 +98,13 @@ void Tension::measure(const Flow& flow, std::span<const Vec3> positions,
 // The attraction reaches far and is smooth, and serves on for longer than what bears pressure.
 bool Tension::isDue(const HeldWalls& h, const Vec3& x, double time_s) const {
   const WallSample& s = h.sample;
-  const Vec3 moved = x - h.place;
-  const double since_s = time_s - h.time_s, walls_m = since_s * h.fastestWall_ms;
+  const double since_s = time_s - h.time_s;
   if (!std::isfinite(since_s)) return true;
-  if (s.clear_m - moved.norm() - walls_m > kernel_.support_m()) return false;
-  Vec3 away = moved;
+  if (s.clear_m - h.moved_m(x, time_s) > kernel_.support_m()) return false;
+  Vec3 away = x - h.place;
   if (s.friction > 0) away -= since_s / s.friction * s.frictionVelocity;
-  return !(away.norm() < kHeldMove * spacing_m_ && walls_m < kHeldMoveOfWalls * spacing_m_);
+  return !(away.norm() < kHeldMove * spacing_m_ &&
+           since_s * h.fastestWall_ms < kHeldMoveOfWalls * spacing_m_);
 }
 
 void Tension::push(double dt_s, std::vector<Vec3>& v) const {

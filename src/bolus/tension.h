@@ -34,7 +34,7 @@ class Tension {
     std::span<const Vec3> positions, velocities;
     std::span<const std::uint8_t> skipped;
     const WallField& field;
-    double time_s, fastest_ms;
+    double time_s, fastest_ms;  ///< of that moment; speed of the fastest wall
   };
   /// Before a new run of as many particles.
   void start(int particles) { held_.assign(particles, {}); }

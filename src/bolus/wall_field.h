@@ -40,6 +40,10 @@ struct HeldWalls {
   WallSample sample;
   Vec3 place = Vec3::Zero();
   double time_s = -INFINITY, fastestWall_ms = 0;  ///< of all walls since then
+  /// How far the particle, now there, and the walls may have moved since, together.
+  double moved_m(const Vec3& now, double now_s) const {
+    return (now - place).norm() + (now_s - time_s) * fastestWall_ms;
+  }
 };
 
 struct Contact {
