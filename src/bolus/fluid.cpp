@@ -14,6 +14,7 @@ constexpr std::array<const char*, 4> kNames{"newtonian", "power-law", "carreau",
 // Below this shear rate the laws are read at it: they diverge at rest. 1e-3 1/s, assumed
 // (1e-4 to 1e-2); the clip decides there anyway.
 constexpr double kLowestShearRate_s = 1e-3;
+constexpr double kHighestShearRate_s = 1e9;  // beyond all that flows
 // Water with soap has 0.025, saliva 0.04 to 0.06, water 0.072, mercury 0.49 N/m.
 constexpr double kLeastTension_Nm = 1e-3, kMostTension_Nm = 0.5;
 }  // namespace
@@ -83,5 +84,9 @@ double apparentViscosity_Pas(const Fluid& f, double shearRate_s) {
       break;
   }
   return std::clamp(eta, f.minViscosity_Pas, f.maxViscosity_Pas);
+}
+
+double leastViscosity_Pas(const Fluid& f) {  // every law only falls, or only rises
+  return std::min(apparentViscosity_Pas(f, 0), apparentViscosity_Pas(f, kHighestShearRate_s));
 }
 }  // namespace swallowclip::bolus

@@ -39,4 +39,6 @@ struct Fluid {
 };
 
 double apparentViscosity_Pas(const Fluid& fluid, double shearRate_s);
+/// At whatever rate of shear.
+double leastViscosity_Pas(const Fluid& fluid);
 }  // namespace swallowclip::bolus

@@ -191,10 +191,9 @@ void Neighbours::search(int begin, int end, float reach, Found& out) const {
   }
 }
 
-void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
-                       const KernelTable& kernel, double volume_m3, const Vec3& period_m,
-                       double skin_m, ThreadPool& pool, const Range& then) {
-  support_m_ = kernel.support_m();
+void Neighbours::collect(std::span<const Vec3> points, std::span<const std::uint8_t> take,
+                         double reach_m, double skin_m, const Vec3& period_m, ThreadPool& pool) {
+  support_m_ = reach_m;
   skin_m_ = skin_m;
   sortIntoCells(points, take, support_m_ + skin_m, period_m, pool);
   candidateStart_.assign(count + 1, 0);
@@ -204,13 +203,20 @@ void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_
     for (int i = begin; i < end; ++i) candidateStart_[i + 1] = found_[chunk].length[i - begin];
   });
   for (int i = 0; i < count; ++i) candidateStart_[i + 1] += candidateStart_[i];
-  const int most = candidateStart_[count];
-  for (auto* a : {&candidates_, &near_, &index}) a->resize(most);
-  for (auto* a : {&r, &gx, &gy, &gz}) a->resize(most);
+  candidates_.resize(candidateStart_[count]);
   pool.forChunks(count, kChunk, [&](int begin, int end, int chunk) {
     std::copy_n(found_[chunk].places.begin(), candidateStart_[end] - candidateStart_[begin],
                 candidates_.begin() + candidateStart_[begin]);
   });
+}
+
+void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_t> take,
+                       const KernelTable& kernel, double volume_m3, const Vec3& period_m,
+                       double skin_m, ThreadPool& pool, const Range& then) {
+  collect(points, take, kernel.support_m(), skin_m, period_m, pool);
+  const int most = candidateStart_[count];
+  for (auto* a : {&near_, &index}) a->resize(most);
+  for (auto* a : {&r, &gx, &gy, &gz}) a->resize(most);
   for (auto* a : {&start, &stop}) a->resize(count);
   sumW.resize(count);
   sumG.shape(count, 0);
@@ -218,9 +224,8 @@ void Neighbours::build(std::span<const Vec3> points, std::span<const std::uint8_
   measure(kernel, volume_m3, pool, then);
 }
 
-bool Neighbours::follow(std::span<const Vec3> points, std::span<const std::uint8_t> take,
-                        const KernelTable& kernel, double volume_m3, ThreadPool& pool,
-                        const Range& then) {
+bool Neighbours::carry(std::span<const Vec3> points, std::span<const std::uint8_t> take,
+                       ThreadPool& pool) {
   const double most2 = skin_m_ * skin_m_ / 4;
   if (most2 == 0 || slot.size() != points.size()) return false;
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -233,6 +238,13 @@ bool Neighbours::follow(std::span<const Vec3> points, std::span<const std::uint8
         for (int s = begin; s < end; ++s) places_.set(s, points[id[owner_[s]]] + shift_[s] - low_);
       },
       kPlacesAlone);
+  return true;
+}
+
+bool Neighbours::follow(std::span<const Vec3> points, std::span<const std::uint8_t> take,
+                        const KernelTable& kernel, double volume_m3, ThreadPool& pool,
+                        const Range& then) {
+  if (!carry(points, take, pool)) return false;
   measure(kernel, volume_m3, pool, then);
   return true;
 }

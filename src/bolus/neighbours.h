@@ -44,6 +44,18 @@ struct Neighbours {
               const KernelTable& kernel, double volume_m3, ThreadPool& pool,
               const Range& then = {});
 
+  /// The first half of build, and of follow: who might be a neighbour, within reach_m + skin_m, and
+  /// where all are, but no gradients. For sweeps that go through candidates once.
+  void collect(std::span<const Vec3> points, std::span<const std::uint8_t> take, double reach_m,
+               double skin_m, const Vec3& period_m, ThreadPool& pool);
+  bool carry(std::span<const Vec3> points, std::span<const std::uint8_t> take, ThreadPool& pool);
+  PlaceLists candidates() const {
+    return {places_.data(), self_.data(), candidateStart_.data(), candidates_.data()};
+  }
+  double skin_m() const { return skin_m_; }
+  /// What was collected serves no more.
+  void forget() { slot.clear(); }
+
   /// The particles have got new numbers: those of their slots, and who has none the others.
   void renumber();
 

@@ -49,7 +49,7 @@ void Solver::Impl::sortParticles(std::vector<double>& more) {
   sort(viscosity.shear().field);
   sort(shifting.last().shift), sort(shifting.last().push);
   sort(viscosity.drags_ms2()), sort(viscosity.slopes_s());
-  if (tension) sort(tension->held());
+  if (tension) sort(tension->held()), tension->forgetLists();
   neighbours.renumber();
 }
 

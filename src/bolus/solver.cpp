@@ -210,6 +210,7 @@ void Solver::Impl::finishFrame() {
     escapedNow += !isGone(particles.state[i]) && escaped(particles.positions[i]);
   stats.escaped = std::max(stats.escaped, escapedNow);
   findNeighbours();  // here, so that a run that goes on from a checkpoint has the same lists
+  if (tension) tension->forgetLists();
 }
 
 Result<StepReport> Solver::advanceTo(double t_s) {

@@ -132,7 +132,10 @@ double Solver::Impl::chooseStep_s(double longest_s) {
     chooseSound(std::max(fastest, wall));
     dt = std::min(dt, wcsph.longestStep_s(kernel.support_m() / 2));
   }
-  if (tension) dt = std::min(dt, tension->longestStep_s());
+  if (tension)
+    dt = std::min(
+        dt, tension->longestStep_s(settlingViscosity_Pas > 0 ? settlingViscosity_Pas
+                                                             : leastViscosity_Pas(def.fluid)));
   fastest += dt * def.gravity_ms2.norm();
   dt = std::min(dt, std::min(def.courant, kLongestMove) * def.spacing_m / fastest);
   if (wall > 0) dt = std::min(dt, kWallCourant * def.spacing_m / wall);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bolus/cubic_spline.h"
 #include "core/simd.h"
 
 namespace swallowclip::bolus {
@@ -128,6 +129,28 @@ SC_CLONES void gradient(const GradientSweep& s, int begin, int end) {
       y.add(k * gy);
       z.add(k * gz);
       stress += k * root(gx * gx + gy * gy + gz * gz) * load(s.r + e);
+    }
+    s.out[3 * i] = sum(x);
+    s.out[3 * i + 1] = sum(y);
+    s.out[3 * i + 2] = sum(z);
+    s.stress[i] = sum(stress) / 6;
+  }
+}
+
+SC_CLONES void attraction(const AttractionSweep& s, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    const float* own = s.lists.places + 4 * static_cast<long>(s.lists.self[i]);
+    D8 x, y, z;
+    F8 stress = all(0);
+    for (int e = s.lists.start[i]; e < s.lists.start[i + 1]; e += kLanes) {
+      const F8x3 o = gather3(s.lists.places, s.lists.candidates + e);
+      const F8 dx = all(own[0]) - o.x, dy = all(own[1]) - o.y, dz = all(own[2]) - o.z;
+      const F8 square = dx * dx + dy * dy + dz * dz;
+      const F8 slope = all(s.factor) * cubic::slopePerQ(root(square) * all(s.perHalfSupport));
+      x.add(slope * dx);
+      y.add(slope * dy);
+      z.add(slope * dz);
+      stress -= slope * square;
     }
     s.out[3 * i] = sum(x);
     s.out[3 * i + 1] = sum(y);
@@ -313,6 +336,9 @@ void GradientSweep::run(int begin, int end) const {
 }
 void PairViscositySweep::run(int begin, int end) const {
   pairViscosity(*this, begin, end);
+}
+void AttractionSweep::run(int begin, int end) const {
+  attraction(*this, begin, end);
 }
 void SlopeSweep::run(int slot, float* out9) const {
   slope(*this, slot, out9);

@@ -17,6 +17,14 @@ struct PairLists {
   const float *gx, *gy, *gz;  ///< V gradW, 1/m
 };
 
+/// Who might be near whom, by places in space, images of periodic neighbours among them.
+struct PlaceLists {
+  const float *places;    ///< [place][4], m
+  const int *self;        ///< [slot] its place
+  const int *start;       ///< [slot] and its end, of each list, in whole vectors
+  const int *candidates;  ///< places; what fills lists up is far away
+};
+
 /// Vectors of three, each in four floats, so that one is fetched at once.
 struct Floats3 {
   std::vector<float> of;
@@ -93,6 +101,16 @@ struct GradientSweep {
   const float *k;
   double *out;     ///< [slot][3]
   const float *r;  ///< [pair]
+  float *stress;
+  void run(int begin, int end) const;
+};
+
+/// out_i = factor sum gradW_ij of a cubic spline, summed as GradientSweep, and stress_i = factor
+/// sum r |gradW_ij| / 6, in one go through places.
+struct AttractionSweep {
+  PlaceLists lists;
+  float perHalfSupport, factor;  ///< 2 / H; the factor times W(0) (2 / H)^2
+  double *out;                   ///< [slot][3]
   float *stress;
   void run(int begin, int end) const;
 };

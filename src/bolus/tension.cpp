@@ -29,35 +29,57 @@ double meanDistance_m(const Kernel& kernel) {  // int r W dV, by the midpoint ru
 }
 }  // namespace
 
-// The shortest capillary wave that particles resolve must not cross a spacing within a step: dt^2 <
-// (rho + rho_air) / 2 dx^3 / (2 pi sigma), Brackbill, Kothe & Zemach 1992, eq. 61, with weightless
-// air.
 Tension::Tension(const Fluid& fluid, const Kernel& own, double spacing_m)
     : density_kgm3_(fluid.density_kgm3),
       spacing_m_(spacing_m),
-      longestStep_s_(std::sqrt(fluid.density_kgm3 * std::pow(spacing_m, 3) /
-                               (4 * kPi * fluid.surfaceTension_Nm))),
+      tension_Nm_(fluid.surfaceTension_Nm),
       kernel_(KernelKind::cubicSpline, kTensionReach * spacing_m),
       table_(kernel_),
-      field_(table_, spacing_m) {
+      // cut and weighed by its own kernel's size: the same relative error with fewer points
+      field_(table_, spacing_m * kernel_.support_m() / own.support_m()) {
   const double reach_m = meanDistance_m(kernel_) - kTakenOff * meanDistance_m(own);
   attraction_m2s2_ = 8 * fluid.surfaceTension_Nm / (fluid.density_kgm3 * reach_m);
   adhesion_m2s2_ = attraction_m2s2_ * (1 + std::cos(fluid.contactAngle_rad)) / 2;
 }
 
-// sum attraction g_ij, and what it transmits: that of a pressure of minus half of it everywhere.
-void Tension::add(const Flow& flow, const Neighbours& pairs, double attraction) {
-  const int n = pairs.count;
-  half_.assign(n + 1, static_cast<float>(attraction / 2));
-  transmitted_.assign(n + 1, 0.f);
-  force_.resize(3 * n);
-  const GradientSweep gradient{pairs.lists(), half_.data(), force_.data(), pairs.r.data(),
-                               transmitted_.data()};
+// The shortest capillary wave that particles resolve must not cross a spacing within a step, dt^2 <
+// c1 rho dx^3 / sigma, with weightless air c1 = 1 / (4 pi) (Brackbill, Kothe & Zemach 1992, eq.
+// 61). Where viscosity holds it back, it creeps instead: dt^2 < c2 eta dx / sigma dt + c1 rho dx^3
+// / sigma (Galusinski & Vigneaux 2008). A ripple of two spacings creeps back at the rate sigma pi /
+// (2 eta dx), and a step may be twice as long as that at most: 1.3 eta dx / sigma.
+double Tension::longestStep_s(double viscosity_Pas) const {
+  constexpr double kCreep = 0.5;  // c2, assumed (0.3 to 1; drops rest with 50 as well)
+  const double creep_s = kCreep * viscosity_Pas * spacing_m_ / tension_Nm_;
+  const double wave2_s2 = density_kgm3_ * std::pow(spacing_m_, 3) / (4 * kPi * tension_Nm_);
+  return creep_s / 2 + std::sqrt(creep_s * creep_s / 4 + wave2_s2);
+}
+
+// A sum_j grad W3, and what it transmits: that of a pressure of minus half of it everywhere.
+void Tension::attract(const Flow& flow) {
+  const double perHalf = 2 / kernel_.support_m();
+  const AttractionSweep sweep{neighbours_.candidates(), static_cast<float>(perHalf),
+                              static_cast<float>(attraction_m2s2_ * std::pow(spacing_m_, 3) *
+                                                 table_.selfW() * perHalf * perHalf),
+                              force_.data(), transmitted_.data()};
   flow.sweep([&](int begin, int end, int) {
-    gradient.run(begin, end);
+    sweep.run(begin, end);
     for (int i = begin; i < end; ++i) {
-      acceleration_[pairs.id[i]] += Vec3(&force_[3 * i]);
-      stress_[pairs.id[i]] -= transmitted_[i];
+      acceleration_[neighbours_.id[i]] = Vec3(&force_[3 * i]);
+      stress_[neighbours_.id[i]] = -transmitted_[i];
+    }
+  });
+}
+
+// The same of the density's own kernel, taken off.
+void Tension::attractLess(const Flow& flow) {
+  half_.assign(flow.count() + 1, static_cast<float>(-kTakenOff * attraction_m2s2_ / 2));
+  const GradientSweep sweep{flow.lists(), half_.data(), force_.data(), flow.neighbours.r.data(),
+                            transmitted_.data()};
+  flow.sweep([&](int begin, int end, int) {
+    sweep.run(begin, end);
+    for (int i = begin; i < end; ++i) {
+      acceleration_[flow.particle(i)] += Vec3(&force_[3 * i]);
+      stress_[flow.particle(i)] -= transmitted_[i];
     }
   });
 }
@@ -65,11 +87,15 @@ void Tension::add(const Flow& flow, const Neighbours& pairs, double attraction) 
 void Tension::measure(const Flow& flow, std::span<const Vec3> positions,
                       std::span<const std::uint8_t> active, const Walls& walls,
                       const Vec3& period_m) {
-  neighbours_.build(positions, active, table_, std::pow(spacing_m_, 3), period_m, 0, flow.pool);
+  if (!neighbours_.carry(positions, active, flow.pool))
+    neighbours_.collect(positions, active, kernel_.support_m(), flow.neighbours.skin_m(), period_m,
+                        flow.pool);
   acceleration_.assign(positions.size(), Vec3::Zero());
   stress_.assign(positions.size(), 0.0);
-  add(flow, neighbours_, attraction_m2s2_);
-  add(flow, flow.neighbours, -kTakenOff * attraction_m2s2_);
+  force_.resize(3 * flow.count());
+  transmitted_.resize(flow.count());
+  attract(flow);
+  attractLess(flow);
   if (walls.triangles.empty() || adhesion_m2s2_ == 0) return;
   due_.resize(flow.count());
   flow.sweep([&](int begin, int end, int) {

@@ -49,13 +49,17 @@ class Tension {
                       std::vector<double>& pressure_Pa) const;
   /// [particle], part of the state of a run.
   std::vector<HeldWalls>& held() { return held_; }
-  double longestStep_s() const { return longestStep_s_; }
+  /// Of a fluid that is at least so viscous.
+  double longestStep_s(double viscosity_Pas) const;
+  /// Numbers of particles have changed, or a run that goes on from here must find the same lists.
+  void forgetLists() { neighbours_.forget(); }
 
  private:
-  void add(const Flow& flow, const Neighbours& pairs, double attraction);
+  void attract(const Flow& flow);
+  void attractLess(const Flow& flow);
   bool isDue(const HeldWalls& held, const Vec3& position, double time_s) const;
 
-  double density_kgm3_, spacing_m_, attraction_m2s2_, adhesion_m2s2_, longestStep_s_;
+  double density_kgm3_, spacing_m_, tension_Nm_, attraction_m2s2_, adhesion_m2s2_;
   Kernel kernel_;
   KernelTable table_;
   WallField field_;

@@ -10,6 +10,7 @@ TEST(Fluid, NewtonianIgnoresShear) {
   f.viscosity_Pas = 0.004;
   EXPECT_EQ(apparentViscosity_Pas(f, 0), 0.004);
   EXPECT_EQ(apparentViscosity_Pas(f, 1e4), 0.004);
+  EXPECT_EQ(leastViscosity_Pas(f), 0.004);
 }
 TEST(Fluid, PowerLawMeetsItsViscosityAtFifty) {
   // L2 xanthan, clinical-reference 4: 0.126 Pa.s at 50 1/s, n = 0.30, K = 1.95
@@ -17,6 +18,7 @@ TEST(Fluid, PowerLawMeetsItsViscosityAtFifty) {
   EXPECT_NEAR(apparentViscosity_Pas(f, 50), 0.126, 0.001);
   EXPECT_EQ(apparentViscosity_Pas(f, 0), 100);      // clipped at rest
   EXPECT_EQ(apparentViscosity_Pas(f, 1e6), 0.002);  // clipped when sheared
+  EXPECT_EQ(leastViscosity_Pas(f), 0.002);
 }
 TEST(Fluid, HerschelBulkleyMeetsItsViscosityAtFifty) {
   // honey barium: 3.0 Pa.s at 50 1/s, yield 5 Pa, n = 0.30

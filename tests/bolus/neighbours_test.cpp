@@ -121,6 +121,39 @@ TEST(Neighbours, GradientsAreAntisymmetricToTheBit) {
     }
 }
 
+// Candidates with a skin, from where the points were before, against the lists of just now.
+TEST(Neighbours, SweepsThroughPlacesAgreeWithThoseThroughLists) {
+  const Kernel kernel(KernelKind::cubicSpline, 4e-3);
+  const KernelTable table(kernel);
+  const std::vector<Vec3> points = scattered(0.05);
+  ThreadPool pool(1);
+  for (const Vec3& period_m : {Vec3(0, 0, 0), Vec3(0.05, 0.02, 0.015)}) {
+    std::vector<Vec3> before = points;
+    for (std::size_t i = 0; i < before.size(); ++i) before[i].y() += i % 2 == 0 ? 3e-4 : -3e-4;
+    Neighbours lists, places;
+    lists.build(points, {}, table, kVolume_m3, period_m, 0, pool);
+    places.collect(before, {}, kernel.support_m(), 1e-3, period_m, pool);
+    ASSERT_TRUE(places.carry(points, {}, pool));
+    std::vector<float> half(lists.count + 1, 0.5f), stress(lists.count), twin(lists.count);
+    std::vector<double> out(3 * lists.count), twinOut(3 * lists.count);
+    GradientSweep{lists.lists(), half.data(), out.data(), lists.r.data(), stress.data()}.run(
+        0, lists.count);
+    const double perHalf = 2 / kernel.support_m();
+    AttractionSweep{places.candidates(), static_cast<float>(perHalf),
+                    static_cast<float>(kVolume_m3 * kernel.w(0) * perHalf * perHalf),
+                    twinOut.data(), twin.data()}
+        .run(0, places.count);
+    const double unit = kVolume_m3 * kernel.w(0) / 4e-3;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const int a = lists.slot[p], b = places.slot[p];
+      EXPECT_LT((Vec3(&out[3 * a]) - Vec3(&twinOut[3 * b])).norm(), 5e-5 * unit);
+      EXPECT_NEAR(stress[a], twin[b], 1e-5 * kVolume_m3 * kernel.w(0));
+    }
+    places.forget();
+    EXPECT_FALSE(places.carry(points, {}, pool));
+  }
+}
+
 TEST(Neighbours, StrayParticleCostsNoMemory) {
   std::vector<Vec3> points{{0, 0, 0}, {1e-3, 0, 0}, {500, -800, 1000}};
   ThreadPool pool(1);
