@@ -84,6 +84,13 @@ constexpr Need kPlug{[](const CaseDef& d) {
 double squeezeParabola(double share) {  // mean 1 across the gap
   return 6 * share * (1 - share);
 }
+// What inertia adds to the pressure between plates that close at constant speed, to first order in
+// rho V h / eta: Jackson 1963, Appl. Sci. Res. A 11, for discs (5/28). For strips the same
+// expansion of u = V x / h F'(z / h) gives 17/70.
+constexpr double kStripInertia = 17.0 / 70, kDiscInertia = 5.0 / 28;
+double squeezeInertia(const S& s, double t, double share) {
+  return 1 + share * s.def.motion.speed.speed(t) * s.gap(t) / s.nu();
+}
 double signOf(double x) {
   return x < 0 ? -1 : 1;
 }
@@ -174,7 +181,8 @@ const std::vector<Formula>& formulas() {
          const double L = s.stripEdge(p.time_s).zero, h = s.gap(p.time_s);
          const double x = p.at.x() - s.centre().x();
          return 6 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
-                std::max(0.0, L * L - x * x) / (h * h * h);
+                squeezeInertia(s, p.time_s, kStripInertia) * std::max(0.0, L * L - x * x) /
+                (h * h * h);
        }},
       {"squeeze-disc-pressure",
        true,
@@ -182,6 +190,7 @@ const std::vector<Formula>& formulas() {
        [](const S& s, const Probe& p) {
          const double R = s.discEdge(p.time_s).zero, h = s.gap(p.time_s);
          return 3 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
+                squeezeInertia(s, p.time_s, kDiscInertia) *
                 std::max(0.0, R * R - p.at.head<2>().squaredNorm()) / (h * h * h);
        }},
       {"squeeze-plane-velocity",
@@ -253,7 +262,8 @@ const std::vector<Formula>& formulas() {
          const double L = s.stripHalf(p.time_s), h = s.gap(p.time_s);
          const auto [c, zero] = s.stripEdge(p.time_s);
          return 6 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
-                (zero * zero * c - c * c * c / 3) / (h * h * h * L);
+                squeezeInertia(s, p.time_s, kStripInertia) * (zero * zero * c - c * c * c / 3) /
+                (h * h * h * L);
        }},
       {"squeeze-disc-mean-pressure",
        false,
@@ -261,8 +271,9 @@ const std::vector<Formula>& formulas() {
        [](const S& s, const Probe& p) {
          const double R = s.discRadius(p.time_s), h = s.gap(p.time_s);
          const auto [c, zero] = s.discEdge(p.time_s);
-         return 3 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) * c * c *
-                (zero * zero - c * c / 2) / (h * h * h * R * R);
+         return 3 * s.fluid().viscosity_Pas * s.def.motion.speed.speed(p.time_s) *
+                squeezeInertia(s, p.time_s, kDiscInertia) * c * c * (zero * zero - c * c / 2) /
+                (h * h * h * R * R);
        }},
       {"shapiro-plane",
        false,
