@@ -41,6 +41,11 @@ struct SqueezedEdge {
 /// like them.
 SqueezedEdge squeezedEdge_m(double start, double mean, double gap);
 
+/// What inertia adds to the pressure between plates that close at constant speed V, times rho V h /
+/// eta, to first order: Jackson 1963, Appl. Sci. Res. A 11, for discs; for strips the same
+/// expansion of u = V x / h F'(z / h).
+inline constexpr double kStripInertia = 17.0 / 70, kDiscInertia = 5.0 / 28;
+
 /// Of a spherical cap that meets its floor under an angle (rad): mean height over the floor divided
 /// by the radius of gyration about the axis. Grows with the angle, from 0 at 0.
 double capSlenderness(double angle_rad);

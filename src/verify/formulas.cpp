@@ -84,10 +84,6 @@ constexpr Need kPlug{[](const CaseDef& d) {
 double squeezeParabola(double share) {  // mean 1 across the gap
   return 6 * share * (1 - share);
 }
-// What inertia adds to the pressure between plates that close at constant speed, to first order in
-// rho V h / eta: Jackson 1963, Appl. Sci. Res. A 11, for discs (5/28). For strips the same
-// expansion of u = V x / h F'(z / h) gives 17/70.
-constexpr double kStripInertia = 17.0 / 70, kDiscInertia = 5.0 / 28;
 double squeezeInertia(const S& s, double t, double share) {
   return 1 + share * s.def.motion.speed.speed(t) * s.gap(t) / s.nu();
 }

@@ -155,6 +155,24 @@ TEST(Quantities, AngleAndPressureOfDropsAreThoseOfTheirShape) {
   EXPECT_EQ(measureSeries({.kind = "drop-pressure"}, s), 20) << "3.5 spacings deep: 4.5 mm";
 }
 
+// Between closing plates the equation of motion along them is, in z / h and with F = 3 z^2 - 2 z^3
+// at rest, F''' = Re (F' + z F'' + c F'^2 - F F'') - K, c = 1 for strips and 1/2 for discs, and F
+// and F' are given at both plates: what is not F''' of such a change has no part along z (1 - z).
+TEST(Analytic, InertiaOfSqueezedFluidFollowsFromItsEquation) {
+  const auto added = [](double c) {
+    double sum = 0;
+    const int n = 20000;
+    for (int k = 0; k < n; ++k) {
+      const double z = (k + 0.5) / n, f = 3 * z * z - 2 * z * z * z, f1 = 6 * z * (1 - z),
+                   f2 = 6 - 12 * z;
+      sum += (f1 + z * f2 + c * f1 * f1 - f * f2) * z * (1 - z) / n;
+    }
+    return 6 * sum / 12;  // of K = 12, that of Stokes' flow
+  };
+  EXPECT_NEAR(added(1), kStripInertia, 1e-6);
+  EXPECT_NEAR(added(0.5), kDiscInertia, 1e-6);
+}
+
 // The profiles of Huppert's similarity solutions hold the volume that they started with.
 TEST(Analytic, GravityCurrentHoldsItsVolume) {
   const double g = 9.81, nu = 1e-3, t = 2;
