@@ -45,7 +45,7 @@ struct BolusDef {
   double longestStep_s = 1e-3;  ///< DESIGN 5
   double courant = 0.4;         ///< spacings per step at the fastest particle, DESIGN 5
   double densityTolerance = 1e-4, rateTolerance = 3e-4;  ///< mean compression left, assumed
-  double solveShare = 2e-3;                              ///< Tolerances::share
+  double solveShare = 5e-4;                              ///< Tolerances::share
 
   /// 621 at 2 mm for the nominal 5 mL, as the thesis has it (4.968 mL).
   int particleCount() const;

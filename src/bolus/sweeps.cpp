@@ -40,7 +40,7 @@ SC_INLINE float rateAt(const PairLists& p, const float* v, int i) {
 
 /// Eight particles at a time: what follows the sums of one waits for them, that of eight does not.
 SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
-  D8 residual, ahead;
+  D8 residual, ahead, moved;
   F8 most = all(0);
   for (int i = begin; i < end; i += kLanes) {
     const int lanes = std::min(kLanes, end - i);
@@ -60,6 +60,7 @@ SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
     // too much pressure is as wrong as too little, unless it is zero already
     const F8 way = select(part, next - y, all(0)), size = magnitude(way) * scale;
     residual.add(size);
+    moved.add(way);
     most = largest(most, size);
     ahead.add(way * select(part, next - x, all(0)));
     const F8 onward = next + all(s.momentum) * (next - x);
@@ -72,7 +73,7 @@ SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
     }
     for (int k = 0; k < lanes; ++k) s.x[i + k] = newX[k], s.y[i + k] = newY[k];
   }
-  StepSweep::Sums sums{.residual = sum(residual), .ahead = sum(ahead)};
+  StepSweep::Sums sums{.residual = sum(residual), .moved = sum(moved), .ahead = sum(ahead)};
   for (int k = 0; k < kLanes; ++k) sums.most = std::max<double>(sums.most, most[k]);
   return sums;
 }

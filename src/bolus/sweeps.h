@@ -66,6 +66,7 @@ struct StepSweep {
   struct Sums {
     double residual = 0;  ///< of |residual|, where it is not held by x' = 0
     double most = 0;      ///< the largest of them
+    double moved = 0;     ///< sum of x' - y
     double ahead = 0;     ///< (x' - y).(x' - x): negative when the momentum leads astray
   };
   Sums run(int begin, int end) const;

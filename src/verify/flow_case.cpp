@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 #include "pipeline/interrupt.h"
 #include "verify/domain.h"
@@ -13,10 +14,6 @@ namespace {
 constexpr int kSnapshotsPerMean = 10;  // assumed (5 to 20)
 // An error below this share of what is allowed need not fall on refinement; assumed (0.1 to 5 %).
 constexpr double kAlreadyExact = 0.01;
-// Where walls drive the flow, a solve for pressure may leave a quarter of what it may in a swallow:
-// 5.7 Pa.s in a gap of 12 spacings lacks 6 % of its flux else, which corrections of places make up
-// for, and 1.6 % so. t50 of a swallow differs by 2 ms. Assumed (1e-4 to 1e-3).
-constexpr double kSolveShare = 5e-4;
 constexpr double kLastShare = 0.02;  // of the time since the last sample, assumed (0.01 to 0.1)
 // At least, assumed (30 to 60; 10 to 30): boundary layers of what starts from rest begin thin.
 constexpr int kStepsToFirstProfile = 40, kStepsOfMoving = 15;
@@ -91,7 +88,6 @@ Result<Run> runAt(const CaseDef& def, double spacing_m, const std::vector<Refere
   bolusDef.solver = def.solver;
   bolusDef.period_m = domain->period_m();
   bolusDef.slip = def.slip;
-  if (def.motion.kind != MotionKind::still) bolusDef.solveShare = kSolveShare;
   bolusDef.full = def.fill.size() == 1 && def.fill.front().kind == FillKind::domain;
   // Viscosity is implicit, of first order in time: a profile must not be looked at after a few
   // steps.
