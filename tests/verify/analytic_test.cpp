@@ -155,6 +155,30 @@ TEST(Quantities, AngleAndPressureOfDropsAreThoseOfTheirShape) {
   EXPECT_EQ(measureSeries({.kind = "drop-pressure"}, s), 20) << "3.5 spacings deep: 4.5 mm";
 }
 
+TEST(Quantities, APlugsEdgeIsFoundBetweenBins) {
+  constexpr double kSpacing_m = 1e-3;
+  CaseDef def;
+  def.domain.shape = Shape::box;
+  def.domain.size_m = {4e-3, 4e-3, 16e-3};
+  for (const double index : {1.0, 0.6})
+    for (const double plug_m : {1.7e-3, 2.3e-3, 3.4e-3}) {
+      def.fluid.index = index;
+      Snapshot s;
+      s.def = &def;
+      s.spacing_m = kSpacing_m;
+      for (int k = 0; k < 16; ++k) {
+        const Vec3 at(2e-3, 2e-3, (k + 0.5) * kSpacing_m);
+        const double power = 1 + 1 / index, half_m = 8e-3;
+        const double sheared_m = std::max(0.0, std::abs(at.z() - half_m) - plug_m);
+        const double lost = std::pow(sheared_m / (half_m - plug_m), power);
+        s.positions.push_back(at);
+        s.velocities.emplace_back(0.03 * (1 - lost), 0, 0);
+      }
+      EXPECT_NEAR(measureSeries({.kind = "plug-half-width"}, s), plug_m, 0.02 * plug_m)
+          << index << " " << plug_m;
+    }
+}
+
 // Between closing plates the equation of motion along them is, in z / h and with F = 3 z^2 - 2 z^3
 // at rest, F''' = Re (F' + z F'' + c F'^2 - F F'') - K, c = 1 for strips and 1/2 for discs, and F
 // and F' are given at both plates: what is not F''' of such a change has no part along z (1 - z).
