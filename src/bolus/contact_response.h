@@ -29,8 +29,12 @@ void keepDistance(const std::vector<Contact>& contacts, double spacing_m, Vec3& 
 /// Distances from the same wall points to x; false when it is behind one.
 bool measureAgain(std::vector<Contact>& contacts, const Vec3& x);
 
-/// Moves x to where it keeps its distance (a film: just inside) and leaves the contacts of that
-/// place; bit by bit where that is far. Returns true when it was outside.
-bool projectInside(const WallField& field, double spacing_m, bool film, Vec3& x,
-                   std::vector<Contact>& contacts);
+/// How far walls that move no farther than `walls_m` in a step push a particle to where it keeps
+/// its distance.
+double longestPush_m(double spacing_m, double dt_s, double walls_m);
+
+/// Moves x to where it keeps its distance (a film: just inside), but no farther than that, and
+/// leaves the contacts of that place. Returns true when it was outside; then bit by bit, too.
+bool projectInside(const WallField& field, double spacing_m, double longestPush_m, bool film,
+                   Vec3& x, std::vector<Contact>& contacts);
 }  // namespace swallowclip::bolus

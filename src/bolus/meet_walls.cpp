@@ -131,7 +131,7 @@ void Solver::Impl::keepOutOfSlits(int i) {
   if (carried.empty() || particles.state[i] != State::fluid || gap_m[i] >= shut_m) return;
   std::vector<Contact> before;
   Vec3 place = carried[i].first;
-  projectInside(field, def.spacing_m, false, place, before);
+  projectInside(field, def.spacing_m, pushLimit_m(), false, place, before);
   const double wide_m = localGap_m(before);
   if (before.empty() || before[0].distance_m < 0 || wide_m < shut_m) return;
   gap_m[i] = wide_m;
@@ -235,10 +235,15 @@ void Solver::Impl::sampleWallsOf(int i) {
   walls[i].gap_m = gap_m[i];
 }
 
+double Solver::Impl::pushLimit_m() const {
+  const double dt_s = lastStep_s > 0 ? lastStep_s : INFINITY;  // before the first step: all the way
+  return longestPush_m(def.spacing_m, dt_s, fastestWall_ms * lastStep_s);
+}
+
 bool Solver::Impl::findContacts(int i) {
   Vec3& x = particles.positions[i];
   const bool film = particles.state[i] == State::film;
-  const bool wasOutside = projectInside(field, def.spacing_m, film, x, contacts[i]);
+  const bool wasOutside = projectInside(field, def.spacing_m, pushLimit_m(), film, x, contacts[i]);
   contactsAt[i] = x;
   return wasOutside;
 }

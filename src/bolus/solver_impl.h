@@ -67,6 +67,7 @@ struct Solver::Impl {
   bool followWalls(int i);
   double movedSinceHeld_m(int i) const;
   bool isClear(int i);
+  double pushLimit_m() const;
   bool findContacts(int i);  ///< true when the particle was outside
   bool followContacts(int i);
   bool compressible() const { return def.solver == SolverKind::wcsph && !frozen; }

@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "bolus/contact_response.h"
 #include "shapes.h"
 
 namespace swallowclip::bolus {
@@ -189,6 +190,34 @@ TEST(WallField, ContactsTellSideAndGap) {
   ASSERT_EQ(c.size(), 1u);
   EXPECT_LT(c[0].distance_m, 0);
   EXPECT_GT(c[0].inward.minCoeff(), 0.5);
+}
+
+// A particle nearer to a wall than it may be, as where a fold has just opened.
+TEST(Contacts, PushWithinATimeNotWithinAStep) {
+  const testing::Mesh mesh = testing::box({0, 0, 0}, {0.02, 0.02, 0.02}, 2e-3);
+  constexpr double kSpacing_m = 1e-3, kNear_m = 0.05e-3, kKept_m = 0.4e-3;
+  const KernelTable table{Kernel(KernelKind::cubicSpline, 2 * kSpacing_m)};
+  WallField field(table, kSpacing_m);
+  const std::vector<Vec3> v(mesh.positions.size(), Vec3::Zero());
+  const Vec3 start(0.0101, 0.0103, kNear_m);
+  field.build(mesh.triangles, mesh.positions, v, start, start);
+  const auto after = [&](double dt_s, double walls_m, int steps) {
+    Vec3 x = start;
+    std::vector<Contact> contacts;
+    for (int k = 0; k < steps; ++k)
+      EXPECT_FALSE(projectInside(field, kSpacing_m, longestPush_m(kSpacing_m, dt_s, walls_m), false,
+                                 x, contacts));
+    EXPECT_NEAR(contacts[0].distance_m, x.z(), 1e-9);
+    return x;
+  };
+  const auto pushed_m = [&](double dt_s, double walls_m, int steps) {
+    return (after(dt_s, walls_m, steps) - start).norm();
+  };
+  EXPECT_NEAR(pushed_m(1e-3, 0, 1), 0.2e-3, 1e-9) << "a fifth of a spacing";
+  EXPECT_NEAR(pushed_m(1e-5, 0, 1), 0.02e-3, 1e-9) << "a tenth of it in a tenth of 0.1 ms";
+  EXPECT_NEAR(pushed_m(1e-5, 0, 10), 0.2e-3, 2e-6);
+  EXPECT_NEAR(pushed_m(1e-5, 0.05e-3, 1), 0.1e-3, 1e-9) << "ahead of a fast wall";
+  EXPECT_NEAR(after(1e-3, 0, 3).z(), kKept_m, 1e-9);
 }
 }  // namespace
 }  // namespace swallowclip::bolus
