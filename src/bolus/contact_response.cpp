@@ -87,8 +87,8 @@ double longestPush_m(double spacing_m, double dt_s, double walls_m) {
   return std::min(longest_m, std::max(longest_m * dt_s / kPush_s, kAhead * walls_m));
 }
 
-bool projectInside(const WallField& field, double spacing_m, double longestPush_m, bool film,
-                   Vec3& x, std::vector<Contact>& out) {
+bool projectInside(const WallField& field, double spacing_m, double pushLimit_m, bool film, Vec3& x,
+                   std::vector<Contact>& out) {
   const double reach = kContactReach * spacing_m, longest = kLongestPush * spacing_m;
   const Vec3 start = x;
   bool wasOutside = false;
@@ -111,7 +111,7 @@ bool projectInside(const WallField& field, double spacing_m, double longestPush_
   if (x == before) return wasOutside;
   const double pushed = (x - before).norm();
   if (pushed < kSmallPush * spacing_m && measureAgain(out, x)) return wasOutside;
-  if (pushed > longestPush_m) x = before + longestPush_m / pushed * (x - before);
+  if (pushed > pushLimit_m) x = before + pushLimit_m / pushed * (x - before);
   field.contacts(x, reach, out);
   if (!out.empty() && out[0].distance_m < 0) stayAt(before);  // a corner threw it out
   return wasOutside;

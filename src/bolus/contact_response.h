@@ -33,8 +33,8 @@ bool measureAgain(std::vector<Contact>& contacts, const Vec3& x);
 /// its distance.
 double longestPush_m(double spacing_m, double dt_s, double walls_m);
 
-/// Moves x to where it keeps its distance (a film: just inside), but no farther than that, and
-/// leaves the contacts of that place. Returns true when it was outside; then bit by bit, too.
-bool projectInside(const WallField& field, double spacing_m, double longestPush_m, bool film,
-                   Vec3& x, std::vector<Contact>& contacts);
+/// Moves x to where it keeps its distance (a film: just inside), no farther than `pushLimit_m`, and
+/// leaves the contacts of that place. Returns true when it was outside; from there bit by bit, too.
+bool projectInside(const WallField& field, double spacing_m, double pushLimit_m, bool film, Vec3& x,
+                   std::vector<Contact>& contacts);
 }  // namespace swallowclip::bolus
