@@ -35,11 +35,11 @@ Json conservationJson(const scoring::Conservation& c) {
             {"swallowed_fraction", number(c.swallowedFraction)},
             {"mean_density_error", number(c.meanDensityError)},
             {"max_density_error", number(c.maxDensityError)},
-            {"film_fraction", number(c.filmFraction)}};
+            {"film_fraction", number(c.filmFraction)},
+            {"volume_error", number(c.volumeError)}};
   if (c.coating_m3) {
     j["coated"] = c.coated;
     j["coating_mL"] = number(*c.coating_m3 * 1e6);
-    j["volume_error"] = number(c.volumeError);
   }
   return j;
 }

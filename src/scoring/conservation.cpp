@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scoring/conservation.h"
 
+#include <cmath>
+
 namespace swallowclip::scoring {
 namespace {
 using frame::ParticleState;
@@ -39,6 +41,25 @@ double coatingVolume_m3(const frame::SkinTrack& skin, int frame) {
   }
   return sum_m3;
 }
+
+/// Fluid, film, what is swallowed and what coats the walls, against the start: the worst frame's.
+double worstVolumeError(const frame::History& h, double start) {
+  const frame::BolusTrack& bolus = h.bolus;
+  double worst = 0;
+  const auto look = [&worst, start](double particles) {
+    const double error = particles / start - 1;
+    if (std::abs(error) > std::abs(worst)) worst = error;
+  };
+  if (bolus.lentShare.empty())
+    for (const frame::LedgerRow& row : h.ledger) look(row.fluid + row.film + row.swallowed);
+  for (std::size_t k = 0; k < bolus.lentShare.size(); ++k) {
+    const int frame = static_cast<int>(k);
+    double held_m3 = coatingVolume_m3(h.skin, frame);
+    for (std::size_t i = 0; i < bolus.state[k].size(); ++i) held_m3 += bolus.volume_m3(frame, i);
+    look(held_m3 / bolus.particleVolume_m3);
+  }
+  return worst;
+}
 }  // namespace
 
 std::optional<Conservation> countParticles(const frame::History& history) {
@@ -50,7 +71,7 @@ std::optional<Conservation> countParticles(const frame::History& history) {
   Conservation c;
   const int last = static_cast<int>(bolus.state.size()) - 1;
   int film = 0;
-  double swallowed_m3 = 0, left_m3 = 0;  // of particles, without what they have lent
+  double swallowed_m3 = 0;  // without what they have lent
   for (std::size_t k = 0; k < state.size(); ++k) {
     if (state[k] == ParticleState::swallowed || region[k] == Region::swallowed) {
       ++c.swallowed;
@@ -58,7 +79,6 @@ std::optional<Conservation> countParticles(const frame::History& history) {
       continue;
     }
     c.coated += state[k] == ParticleState::coating;
-    left_m3 += bolus.volume_m3(last, k);
     if (state[k] == ParticleState::coating) continue;
     countRegion(region[k], c);
     ++c.particlesEnd;
@@ -74,11 +94,10 @@ std::optional<Conservation> countParticles(const frame::History& history) {
   const double start = c.particlesStart > 0 ? c.particlesStart : 1;
   c.swallowedFraction = c.swallowed / start;
   if (!bolus.lentShare.empty()) {
-    const double start_m3 = bolus.particleVolume_m3 * start;
     c.coating_m3 = coatingVolume_m3(history.skin, last);
-    c.swallowedFraction = swallowed_m3 / start_m3;
-    c.volumeError = (swallowed_m3 + left_m3 + *c.coating_m3) / start_m3 - 1;
+    c.swallowedFraction = swallowed_m3 / (bolus.particleVolume_m3 * start);
   }
+  c.volumeError = worstVolumeError(history, start);
   c.filmFraction = film / start;
   c.meanDensityError = history.meta.meanDensityError;
   c.maxDensityError = history.meta.maxDensityError;

@@ -67,9 +67,10 @@ void addConservation(const Conservation& c, std::string& out) {
       to, "Left in: mouth {}, pharynx {}, airway {}, nasopharynx {}, esophagus {}; film {:.1f} %\n",
       c.leftInOral, c.leftInPharynx, c.inAirway, c.inNasopharynx, c.inEsophagus,
       100 * c.filmFraction);
-  if (c.coating_m3)
-    fmt::format_to(to, "Coating on the walls: {:.3f} mL; volume error {:.1e}\n",
-                   *c.coating_m3 * 1e6, c.volumeError);
+  if (c.coating_m3) fmt::format_to(to, "Coating on the walls: {:.3f} mL\n", *c.coating_m3 * 1e6);
+  fmt::format_to(
+      to, "Ledger (fluid, film, swallowed, coating): within {:.1e} of the start in every frame\n",
+      std::abs(c.volumeError));
   fmt::format_to(
       to,
       "Density error: mean {:.3f} %, largest {:.2f} %, above 10 % in {:.4f} % of particle-steps; "

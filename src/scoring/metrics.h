@@ -57,8 +57,10 @@ struct Conservation {
   std::int64_t velocityClamps = 0;  ///< times that a particle would have outrun its contacts
 
   /// On the walls, thinner than a particle; empty when the bolus coats none. Then swallowedFraction
-  /// is one of volume, and volumeError what particles and walls hold against the start, as a share.
+  /// is one of volume.
   std::optional<double> coating_m3;
+  /// Fluid, film, what is swallowed and the coating, against the start, as a share: the worst
+  /// frame's. With a coating 1e-7, as single precision keeps it in the history.
   double volumeError = 0;
 
   /// Every particle that started is somewhere.

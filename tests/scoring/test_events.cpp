@@ -168,11 +168,13 @@ TEST(Conservation, CountsEveryParticleOnce) {
   EXPECT_EQ(c.swallowed, 194);
   EXPECT_DOUBLE_EQ(c.swallowedFraction, 0.97);
   EXPECT_DOUBLE_EQ(c.filmFraction, 0.01);
+  EXPECT_EQ(c.volumeError, 0);
   const Metrics m = measure(h, testRules()).value();
   EXPECT_DOUBLE_EQ(m.quantity("left_in_oral")->value.value(), 1 / 200.0);
   EXPECT_DOUBLE_EQ(m.quantity("left_in_larynx")->value.value(), 1 / 200.0);
   h.ledger[last].fluid = 3;  // one is lost without being counted as escaped
   EXPECT_FALSE(countParticles(h)->balanced());
+  EXPECT_DOUBLE_EQ(countParticles(h)->volumeError, 199 / 200.0 - 1);
 }
 
 TEST(Clearance, HalfOfTheBolusPassesTheRamus) {
