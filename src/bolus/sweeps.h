@@ -53,7 +53,8 @@ struct PressureSweep {
 
 /// One projected step of  residual = source + sum (a_i - a_j).g_ij + a_i.wall_i: with s = diagonal
 /// / relax,  z = y + residual / s  and  z_ = z + room / s, x' = z above zero, z_ s / (s + 1 / hold)
-/// where that is below, else 0;  y' = x' + momentum (x' - x), not below zero where hold is none.
+/// where that is below, else 0;  y' = x' + momentum (x' - x) + lead (x' - y), not below zero where
+/// hold is none.
 /// Chunks begin at multiples of eight, and all arrays have seven more slots of zeros.
 struct StepSweep {
   PairLists pairs;
@@ -61,7 +62,7 @@ struct StepSweep {
   const float *diagonal;  ///< 0: takes no part
   const float *room;      ///< what the source lacks of that for tension
   const float *hold;      ///< tension for how much of a source that is left, m^2; 0: none
-  float relax, momentum;
+  float relax, momentum, lead;
   float *x, *y;  ///< in and out
   struct Sums {
     double residual = 0;  ///< of |residual|, where it is not held by x' = 0
