@@ -258,10 +258,10 @@ int Neighbours::pickNear(int begin, int end) {
     for (int i = begin; i < end; ++i) stop[i] = n = candidateStart_[i + 1] - candidateStart_[begin];
     return n;
   }
-  int* const out = &near_[candidateStart_[begin]];
+  int* const out = near_.data() + candidateStart_[begin];
   for (int i = begin; i < end; ++i) {
     const int first = candidateStart_[i];
-    n += stillWithin(places_.data(), places_[self_[i]], &candidates_[first],
+    n += stillWithin(places_.data(), places_[self_[i]], candidates_.data() + first,
                      candidateStart_[i + 1] - first, reach * reach, out + n);
     for (; n % simd::kLanes != 0; ++n) out[n] = static_cast<int>(shift_.size());  // far away
     stop[i] = n;
@@ -275,7 +275,7 @@ void Neighbours::measure(const KernelTable& kernel, double volume_m3, ThreadPool
   const float volume = static_cast<float>(volume_m3);
   const bool images = static_cast<int>(shift_.size()) > count;  // else slots are places
   const auto measureAt = [&](int begin, int end, int at) {
-    const int* const near = &(skin_m_ == 0 ? candidates_ : near_)[candidateStart_[begin]];
+    const int* const near = (skin_m_ == 0 ? candidates_ : near_).data() + candidateStart_[begin];
     for (int i = begin, from = 0; i < end; ++i) {
       const int first = at + from, n = stop[i] - from;
       if (images)
