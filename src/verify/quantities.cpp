@@ -10,10 +10,8 @@
 namespace swallowclip::verify {
 namespace {
 // Pressures of neighbouring layers are tied to each other only through their sum (collocated
-// unknowns: a zigzag from layer to layer has almost no gradient): in columns at rest the layer at a
-// wall is 2 % above, at an edge 4 and in a corner 6, and the next one 1 % below. Two layers make up
-// for it on a floor that is level, and the lowest two of a tilted box lie at edges: so, four.
-constexpr double kPressureBin = 4;         // spacings
+// unknowns: a zigzag from layer to layer has almost no gradient), so two layers make one bin.
+constexpr double kPressureBin = 2;         // spacings
 constexpr std::size_t kSurfaceLayers = 3;  // a surface is read from, assumed (2 to 4)
 
 /// Position across the axis of a round room: tubes lie along x, all else stands along z.
